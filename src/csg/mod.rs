@@ -1,0 +1,164 @@
+//! The recipe of a shape, and its cooking.
+//!
+//! A [`Csg`] says how a shape is made; it holds no mesh it has cooked. Recipes are shared freely (`Arc`), compare by
+//! value, and know whether they describe a plane region or a solid.
+
+use crate::boolean::Op;
+use crate::math::{Affine3, Vec2, Vec3};
+use crate::mesh::Mesh;
+use std::sync::Arc;
+
+/// How a shape is made.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Csg {
+    /// Nothing at all, of no dimension: what an empty `union()` is.
+    Nothing,
+    /// A leaf in the plane.
+    Flat(Flat),
+    /// A leaf in space.
+    Body(Body),
+    /// The child moved by an affine map. Of a plane region, the map's part in x and y is taken.
+    Transform {
+        /// Result from child.
+        map: Affine3,
+        /// What is moved.
+        child: Arc<Csg>,
+    },
+    /// The child with a colour, for pictures and formats that have it.
+    Color {
+        /// Red, green, blue and opacity, each from 0 to 1.
+        color: [f32; 4],
+        /// What is coloured.
+        child: Arc<Csg>,
+    },
+    /// A boolean of children of one dimension.
+    Combine {
+        /// The operation.
+        op: Op,
+        /// Its operands, in order.
+        children: Vec<Arc<Csg>>,
+    },
+    /// The convex hull of all children together.
+    Hull {
+        /// What is wrapped.
+        children: Vec<Arc<Csg>>,
+    },
+    /// A plane region swept along a straight line.
+    LinearExtrude {
+        /// How.
+        sweep: LinearSweep,
+        /// The region.
+        child: Arc<Csg>,
+    },
+    /// A plane region turned about the y axis, which then becomes the z axis.
+    RotateExtrude {
+        /// How.
+        sweep: RotateSweep,
+        /// The region; it must not cross x = 0.
+        child: Arc<Csg>,
+    },
+}
+
+/// A leaf in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Flat {
+    /// The rectangle between two corners.
+    Rectangle {
+        /// Smallest coordinates.
+        min: Vec2,
+        /// Largest coordinates.
+        max: Vec2,
+    },
+    /// A regular polygon about the origin with its first vertex on the x axis.
+    Circle {
+        /// Distance of the vertices from the origin.
+        radius: f64,
+        /// Number of vertices, at least 3.
+        fragments: u32,
+    },
+    /// Contours filled by the even-odd rule.
+    Polygon {
+        /// Closed contours in any direction.
+        contours: Arc<Vec<Vec<Vec2>>>,
+    },
+}
+
+/// A leaf in space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body {
+    /// The box between two corners.
+    Cuboid {
+        /// Smallest coordinates.
+        min: Vec3,
+        /// Largest coordinates.
+        max: Vec3,
+    },
+    /// Rings of latitude about the z axis at half-step angles, as OpenSCAD's `sphere` makes them: no pole vertices.
+    Sphere {
+        /// Distance of the vertices from the origin.
+        radius: f64,
+        /// Number of vertices a ring, at least 3; there are (n + 1) / 2 rings.
+        fragments: u32,
+    },
+    /// A cylinder or cone about the z axis between two heights.
+    Frustum {
+        /// Heights of the two ends, the lower one first.
+        heights: [f64; 2],
+        /// Radii of the two ends; one of them may be 0.
+        radii: [f64; 2],
+        /// Number of vertices a ring, at least 3.
+        fragments: u32,
+    },
+    /// Triangles from a polyhedron or a file, closed as a chain.
+    Mesh(Arc<Mesh>),
+}
+
+/// The numbers of a straight sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearSweep {
+    /// From the base to the top. Only its z component is turned into height; x and y shear the sweep.
+    pub vector: Vec3,
+    /// Whether the sweep is centred about z = 0.
+    pub center: bool,
+    /// Turn of the top against the base, in radians, clockwise seen from above when positive.
+    pub twist: f64,
+    /// Number of layers, at least 1.
+    pub slices: u32,
+    /// Size of the top against the base, on each axis; zero gives a point or a ridge.
+    pub scale: Vec2,
+}
+
+/// The numbers of a turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RotateSweep {
+    /// Angle swept, in radians; a full turn closes on itself.
+    pub angle: f64,
+    /// Angle at which the sweep starts, in radians from the x axis.
+    pub start: f64,
+    /// Number of steps of the sweep, at least 1 (at least 3 for a full turn).
+    pub fragments: u32,
+}
+
+/// Whether a recipe describes a region of the plane or a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// A plane region.
+    Two,
+    /// A solid.
+    Three,
+}
+
+impl Csg {
+    /// The dimension of the shape; `None` where there is no leaf. Of mixed children the first one decides.
+    pub fn dimension(&self) -> Option<Dimension> {
+        match self {
+            Csg::Nothing => None,
+            Csg::Flat(_) => Some(Dimension::Two),
+            Csg::Body(_) | Csg::LinearExtrude { .. } | Csg::RotateExtrude { .. } => Some(Dimension::Three),
+            Csg::Transform { child, .. } | Csg::Color { child, .. } => child.dimension(),
+            Csg::Combine { children, .. } | Csg::Hull { children } => {
+                children.iter().find_map(|child| child.dimension())
+            }
+        }
+    }
+}

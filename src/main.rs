@@ -1,0 +1,7 @@
+//! The program `ogee`; everything it does is in [`ogee::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ogee::cli::run()
+}

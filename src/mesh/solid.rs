@@ -1,0 +1,94 @@
+use super::defects::Fans;
+use super::{Defects, Mesh};
+
+/// A mesh that bounds a volume, checked once.
+///
+/// Positions are finite; every half-edge has exactly one twin running the other way; no triangle repeats a vertex;
+/// parts that touch at an edge or a vertex have their own copies of it. A solid may be empty, have several
+/// components and cavities, and, when it came from outside, cross itself: what is inside is where the winding
+/// number is at least one.
+///
+/// ```
+/// use ogee::mesh::{cuboid, Solid};
+/// use ogee::math::Vec3;
+///
+/// let cube = cuboid(Vec3::ZERO, Vec3::ONE);
+/// assert_eq!(cube.triangles().len(), 12);
+///
+/// let mut open = cube.into_mesh();
+/// open.triangles.pop();
+/// assert_eq!(Solid::new(open).unwrap_err().open_edges, 3);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solid {
+    mesh: Mesh,
+    embedded: bool,
+}
+
+impl Solid {
+    /// Checks `mesh`, drops positions that no triangle uses and gives fans that share a vertex a copy each.
+    ///
+    /// # Errors
+    /// The counts of what is wrong, when a position is not finite, an index is out of range, a triangle repeats a
+    /// vertex, or an edge has other than one triangle running along it each way.
+    pub fn new(mesh: Mesh) -> Result<Solid, Defects> {
+        let defects = Defects::of(&mesh);
+        if !defects.is_solid() {
+            return Err(defects);
+        }
+        let whole = defects.non_manifold_vertices == 0 && defects.unused_positions == 0;
+        let mesh = if whole { mesh } else { with_a_vertex_per_fan(&mesh) };
+        Ok(Solid { mesh, embedded: false })
+    }
+
+    /// A solid made by a verb that keeps the promises by construction. `embedded` says that the surface is known
+    /// not to cross or touch itself except at its own edges and vertices.
+    pub(crate) fn assume(mesh: Mesh, embedded: bool) -> Solid {
+        debug_assert!(Defects::of(&mesh).is_solid(), "{:?}", Defects::of(&mesh));
+        Solid { mesh, embedded }
+    }
+
+    /// Whether the surface is known not to cross itself; `false` where nobody has looked.
+    pub fn is_embedded(&self) -> bool {
+        self.embedded
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Vertex positions, in model units.
+    pub fn positions(&self) -> &[crate::math::Vec3] {
+        &self.mesh.positions
+    }
+
+    /// Vertex indices of each triangle, counter-clockwise seen from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.mesh.triangles
+    }
+
+    /// Whether it encloses nothing at all.
+    pub fn is_empty(&self) -> bool {
+        self.mesh.is_empty()
+    }
+
+    /// Gives up the promise and keeps the triangles.
+    pub fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
+}
+
+/// The same triangles with one vertex for each fan, in the order of their first corners.
+fn with_a_vertex_per_fan(mesh: &Mesh) -> Mesh {
+    let fans = Fans::new(&mesh.triangles);
+    let mut vertex_of_root = vec![u32::MAX; 3 * mesh.triangles.len()];
+    let mut positions = Vec::with_capacity(mesh.positions.len());
+    for (root, vertex) in fans.roots(&mesh.triangles) {
+        vertex_of_root[root as usize] = positions.len() as u32;
+        positions.push(mesh.positions[vertex as usize]);
+    }
+    let corner = |c: usize| vertex_of_root[fans.root(c as u32) as usize];
+    let triangles = (0..mesh.triangles.len()).map(|t| [corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)]);
+    Mesh { triangles: triangles.collect(), positions }
+}

@@ -1,0 +1,89 @@
+//! Connectivity of a triangle mesh by half-edges; it has never heard of positions.
+//!
+//! Half-edge `h` is side `h % 3` of triangle `h / 3` and runs from corner `h % 3` to the next corner.
+
+/// Twin half-edges of a triangle list.
+#[derive(Clone, Debug)]
+pub struct Topology {
+    twins: Vec<u32>,
+}
+
+impl Topology {
+    /// Marks a half-edge that has no single twin: a border, or an edge of more than two triangles.
+    pub const NONE: u32 = u32::MAX;
+
+    /// Pairs every half-edge with the one that runs the other way. Where an edge has other than one half-edge in
+    /// each direction, its half-edges have no twin.
+    pub fn new(triangles: &[[u32; 3]]) -> Topology {
+        let mut twins = vec![Self::NONE; triangles.len() * 3];
+        for group in sorted_half_edges(triangles).chunk_by(|a, b| a.edge() == b.edge()) {
+            if let [a, b] = group
+                && a.reversed != b.reversed
+            {
+                twins[a.id as usize] = b.id;
+                twins[b.id as usize] = a.id;
+            }
+        }
+        Topology { twins }
+    }
+
+    /// The half-edge that runs the other way, or [`Topology::NONE`].
+    pub fn twin(&self, half_edge: u32) -> u32 {
+        self.twins[half_edge as usize]
+    }
+
+    /// The half-edge after this one around its triangle.
+    pub fn next(half_edge: u32) -> u32 {
+        if half_edge % 3 == 2 { half_edge - 2 } else { half_edge + 1 }
+    }
+
+    /// The half-edge before this one around its triangle.
+    pub fn previous(half_edge: u32) -> u32 {
+        if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
+    }
+
+    /// Number of half-edges, three a triangle.
+    pub fn len(&self) -> usize {
+        self.twins.len()
+    }
+
+    /// Whether there is no half-edge.
+    pub fn is_empty(&self) -> bool {
+        self.twins.is_empty()
+    }
+
+    /// Whether every half-edge has its twin.
+    pub fn is_closed(&self) -> bool {
+        !self.twins.contains(&Self::NONE)
+    }
+}
+
+/// A half-edge with the edge it lies on, for sorting.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct HalfEdge {
+    low: u32,
+    high: u32,
+    /// Whether it runs from the higher vertex to the lower one.
+    pub(super) reversed: bool,
+    id: u32,
+}
+
+impl HalfEdge {
+    /// The undirected edge.
+    pub(super) fn edge(&self) -> (u32, u32) {
+        (self.low, self.high)
+    }
+}
+
+/// All half-edges, those of one undirected edge side by side.
+pub(super) fn sorted_half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
+    let mut all: Vec<HalfEdge> = (0..3 * triangles.len())
+        .map(|h| {
+            let triangle = triangles[h / 3];
+            let (from, to) = (triangle[h % 3], triangle[(h + 1) % 3]);
+            HalfEdge { low: from.min(to), high: from.max(to), reversed: from > to, id: h as u32 }
+        })
+        .collect();
+    all.sort_unstable();
+    all
+}

@@ -1,0 +1,1 @@
+//! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.

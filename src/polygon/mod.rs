@@ -1,0 +1,5 @@
+//! Regions of the plane with holes, their exact overlay and their triangulation.
+
+mod region;
+
+pub use region::Region;

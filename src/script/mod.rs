@@ -1,0 +1,88 @@
+//! The script language: text to recipe.
+//!
+//! The language is OpenSCAD's. Evaluating a script makes a [`Csg`] recipe and never a mesh; what it needs from outside
+//! (the texts of other files, meshes) it asks of a [`Host`], and what it has to say on the way (echo, warnings, errors)
+//! it hands to the host as a [`Message`].
+
+mod diagnostic;
+
+pub use diagnostic::{FileId, Frame, Label, Message, Severity, Span};
+
+use crate::csg::Csg;
+use crate::mesh::Mesh;
+use std::sync::Arc;
+
+/// What a script asks of the world around it.
+pub trait Host {
+    /// The text of the script `name` as written in an `include` or `use` of the file `from`, with the name by which
+    /// the same file is known however it was reached.
+    ///
+    /// # Errors
+    /// A sentence for the user: not found, not text, not allowed.
+    fn script(&mut self, name: &str, from: &str) -> Result<Loaded, String>;
+
+    /// The mesh in the file `name` as written in an `import` of the file `from`.
+    ///
+    /// # Errors
+    /// A sentence for the user: not found, not a mesh, not allowed.
+    fn mesh(&mut self, name: &str, from: &str) -> Result<Arc<Mesh>, String>;
+
+    /// Takes what the script says, in order: echoes, warnings, errors.
+    fn say(&mut self, message: Message);
+}
+
+/// The text of a script.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Loaded {
+    /// Its one name, for cycles, traces and for finding what it names in turn.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// What bounds an evaluation and sets its stage.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Assignments that override those at the top level of the script, each `name=expression`.
+    pub define: Vec<String>,
+    /// Value of `$t`.
+    pub time: f64,
+    /// Most steps (statements, calls, elements of lists) before evaluation stops with [`Failure::Limit`].
+    pub max_steps: u64,
+    /// Deepest nesting of calls that are not tail calls.
+    pub max_depth: u32,
+    /// Most bytes of values alive at once, roughly counted.
+    pub max_bytes: u64,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            define: Vec::new(),
+            time: 0.0,
+            max_steps: 1_000_000_000,
+            max_depth: 20_000,
+            max_bytes: 4 << 30,
+        }
+    }
+}
+
+/// What a script makes.
+#[derive(Clone, Debug)]
+pub struct Evaluated {
+    /// The shape: what the script builds at its top level, joined.
+    pub recipe: Arc<Csg>,
+    /// What is marked with `#` or `%`, to be shown beside the shape.
+    pub shown: Vec<Arc<Csg>>,
+    /// The texts that took part; a [`FileId`] is an index into them.
+    pub files: Vec<Loaded>,
+}
+
+/// Why there is no recipe. The message that says it has gone to [`Host::say`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The script is wrong.
+    Error,
+    /// A limit of [`Options`] was reached.
+    Limit,
+}

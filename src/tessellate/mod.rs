@@ -1,0 +1,1 @@
+//! Smooth to flat: polygons extruded and revolved.
