@@ -38,7 +38,7 @@
 //! | layer | modules |
 //! |---|---|
 //! | ground | [`math`], [`par`], [`numeric`] |
-//! | nouns | [`spatial`], [`polygon`], [`mesh`] |
+//! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`] |
 //! | verbs | [`tessellate`], [`boolean`], [`hull`] |
 //! | worlds | [`csg`] recipe to solid, [`io`] values and bytes, [`render`] solids to pictures, [`script`] text to recipe |
 //! | shell | `cli`, `main.rs`: paths, clock, environment, terminal; only in the program |
@@ -49,6 +49,7 @@ pub mod numeric;
 pub mod par;
 
 // nouns
+pub mod curve;
 pub mod mesh;
 pub mod polygon;
 pub mod spatial;
