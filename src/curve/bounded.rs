@@ -1,7 +1,7 @@
 use super::evaluate::{self, SAFE_SIZES};
+use super::subdivide::reciprocal_powers;
 use crate::math::Blend;
 use crate::numeric::double_double::DoubleDouble;
-use crate::numeric::roots::power_of_two;
 
 /// A value and a bound of its error: the true value differs by at most `error`, in each component.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,23 +42,11 @@ pub(super) fn eval_scaled<P: Blend>(points: &[P], t: f64, size: f64) -> P {
 /// Scaling is exact but for what is below 2^-1022 of the size, and for a result that is subnormal in the end; both
 /// are in the bound.
 fn scaled<P: Blend>(points: &[P], size: f64, evaluate: impl Fn(&[P]) -> Bounded<P>) -> Bounded<P> {
-    // Two factors, since one power of two cannot span the whole range.
-    let exponent = exponent_of(size);
-    let (first, second) = (-exponent / 2, -exponent - -exponent / 2);
-    let (up, down) = ((power_of_two(first), power_of_two(second)), (power_of_two(-first), power_of_two(-second)));
-    let moved: Vec<P> = points.iter().map(|&point| point * up.0 * up.1).collect();
+    let [first, second] = reciprocal_powers(size);
+    let moved: Vec<P> = points.iter().map(|&point| point * first * second).collect();
     let Bounded { value, error } = evaluate(&moved);
-    let back = |x: f64| x * down.0 * down.1;
+    let back = |x: f64| x * (1.0 / first) * (1.0 / second);
     Bounded { value: value.map(back), error: error.map(|e| back(e + TINY).next_up() + TINY) }
-}
-
-/// The exponent of the power of two at or below a positive number.
-fn exponent_of(size: f64) -> i32 {
-    if size < f64::MIN_POSITIVE {
-        // A subnormal number: its highest bit tells.
-        return -1074 + (63 - size.to_bits().leading_zeros() as i32);
-    }
-    (size.to_bits() >> 52) as i32 - 1023
 }
 
 /// A value replaced by the compensated one, in those components where it is off by more than that one's own bound (so

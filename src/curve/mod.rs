@@ -24,12 +24,18 @@ mod batch;
 mod bernstein;
 mod bezier;
 mod bounded;
+mod convert;
+mod differential;
 pub mod evaluate;
+mod reduce;
 mod subdivide;
 
 pub use bernstein::BernsteinRoot;
 pub use bezier::{AnyBezier, Bernstein, Bezier, Cubic, Line, Quadratic};
 pub use bounded::Bounded;
+pub use convert::monomials;
+pub use differential::{Curve, Frame, Jet, Tangents, rotation_minimizing_frames, tangents};
+pub use reduce::{Reduced, reduce};
 pub use subdivide::{Joined, join};
 
 use crate::math::Blend;

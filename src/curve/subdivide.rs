@@ -1,6 +1,7 @@
 use super::evaluate::{eval, lerp};
 use super::{Bernstein, CurveError};
 use crate::math::{Blend, pow};
+use crate::numeric::roots::power_of_two;
 
 /// Above this the difference of two numbers may overflow.
 const HUGE: f64 = 0.5 * f64::MAX;
@@ -46,6 +47,30 @@ fn with_headroom<P: Blend>(points: &mut [P], work: impl FnOnce(&mut [P])) {
     for point in points {
         *point = *point * 4.0;
     }
+}
+
+/// Runs `work` on the points brought near size 1 by a power of two, and leaves them so.
+pub(super) fn with_unit_size<P: Blend, T>(points: &mut [P], work: impl FnOnce(&mut [P]) -> T) -> T {
+    let size = points.iter().fold(0.0, |most: f64, point| most.max(point.max_abs()));
+    if size > 0.0 {
+        let [first, second] = reciprocal_powers(size);
+        for point in &mut *points {
+            *point = *point * first * second;
+        }
+    }
+    work(points)
+}
+
+/// Two powers of two whose product brings a positive number between 1 and 2; two, since one may be out of range.
+pub(super) fn reciprocal_powers(size: f64) -> [f64; 2] {
+    let exponent = if size < f64::MIN_POSITIVE {
+        // A subnormal number: its highest bit tells.
+        -1011 - size.to_bits().leading_zeros() as i32
+    } else {
+        (size.to_bits() >> 52) as i32 - 1023
+    };
+    let half = -exponent / 2;
+    [power_of_two(half), power_of_two(-exponent - half)]
 }
 
 /// The part between two finite parameters, in place; its ends are the points that evaluation gives.
