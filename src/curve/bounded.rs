@@ -84,10 +84,11 @@ fn running<P: Blend>(points: &[P], t: f64) -> Bounded<P> {
 
 /// The linear geometric method of [`evaluate::wozny_chudy`] in double-double arithmetic, for `t` in [0, 1].
 ///
-/// Cost about 25 times the plain method, linear in the degree n. With u' = 2^-102 for one operation, the share h and its
-/// complement have relative errors of at most 6k u' at step k; a weight is a product of at most n of them, so the sum
-/// is off by at most 8(n + 2)^2 u' times `size`, the sum of `|b_i| B_i(t)`, before it is rounded to `f64`. The bound
-/// handed back is that, with `size` computed alongside.
+/// Cost about 25 times the plain method, linear in the degree. The bound, that of the last rounding to `f64` and a few
+/// times n 2^-102 of the sum of `|b_i| B_i(t)`, runs along: in units of 2^-102, the error of one double-double
+/// operation, the ratio is off by 1 and `grown` by 2 more than the share before it; `whole = grown + k` is off by the
+/// share of that and 1; share and rest add 1 for their division and products and the sum 1 each. All terms of
+/// `size` are positive, so that its own rounding is covered by a factor of 2.
 pub fn compensated<P: Blend>(points: &[P], t: f64) -> Bounded<P> {
     let n = points.len() - 1;
     let near_start = t <= 0.5;
@@ -103,7 +104,7 @@ pub fn compensated<P: Blend>(points: &[P], t: f64) -> Bounded<P> {
     for (axis, mean) in mean.iter_mut().take(P::DIMENSION).enumerate() {
         *mean = DoubleDouble::from(at(0).component(axis));
     }
-    let mut size = at(0).map(f64::abs);
+    let (mut share_error, mut size, mut error) = (0.0, at(0).map(f64::abs), P::ZERO);
     for k in 1..=n {
         let grown = share * ratio * (n - k + 1) as f64;
         let whole = grown + DoubleDouble::from(k as f64);
@@ -112,11 +113,13 @@ pub fn compensated<P: Blend>(points: &[P], t: f64) -> Bounded<P> {
         for (axis, mean) in mean.iter_mut().take(P::DIMENSION).enumerate() {
             *mean = *mean * keep + share * at(k).component(axis);
         }
-        size = size * keep.hi + at(k).map(f64::abs) * share.hi;
+        let grown_error = share_error + 3.0;
+        share_error = keep.hi * grown_error + 2.0;
+        let (old, new) = (size * keep.hi, at(k).map(f64::abs) * share.hi);
+        size = old + new;
+        error = error * keep.hi + old * (share.hi * grown_error + 3.0) + new * (share_error + 1.0) + size;
     }
     let value = P::from_components(|axis| mean[axis].to_f64());
-    let growth = 8.0 * ((n + 2) * (n + 2)) as f64 * DoubleDouble::EPSILON;
-    // The plain sum `size` is itself within 5 n^2 u of the true one, far less than the factor 2 allows for.
-    let error = value.zip(size, |v, size| U * v.abs() * (1.0 + f64::EPSILON) + 2.0 * growth * size + TINY);
-    Bounded { value, error }
+    let rounding = value.map(|v| U * v.abs() * (1.0 + f64::EPSILON) + TINY);
+    Bounded { value, error: rounding + error * (2.0 * DoubleDouble::EPSILON) }
 }

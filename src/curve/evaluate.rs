@@ -201,13 +201,7 @@ pub fn horner<P: Blend>(coefficients: &[P], t: f64) -> P {
 pub fn forward_differences<P: Blend>(points: &[P], steps: usize) -> Vec<P> {
     assert!(steps > 0, "at least one step");
     let n = points.len() - 1;
-    let mut differences: Vec<P> =
-        (0..=n).map(|i| de_casteljau(points, i as f64 / steps as f64)).collect();
-    for order in 1..=n {
-        for i in (order..=n).rev() {
-            differences[i] = differences[i] - differences[i - 1];
-        }
-    }
+    let mut differences = step_differences(points, steps);
     let mut out = Vec::with_capacity(steps + 1);
     for _ in 0..steps {
         out.push(differences[0]);
@@ -217,4 +211,35 @@ pub fn forward_differences<P: Blend>(points: &[P], steps: usize) -> Vec<P> {
     }
     out.push(points[n]);
     out
+}
+
+/// Forward differences at 0 of all orders for the step `1 / steps`.
+///
+/// From monomial coefficients and not from values, whose differences would cancel: dividing by s, s - 1, s - 2 and so
+/// on gives Newton's coefficients, which are the differences over factorials.
+fn step_differences<P: Blend>(points: &[P], steps: usize) -> Vec<P> {
+    let n = points.len() - 1;
+    let mut row = points.to_vec();
+    for order in 1..=n {
+        for i in (order..=n).rev() {
+            row[i] = row[i] - row[i - 1];
+        }
+    }
+    let (mut binomial, mut scale) = (1.0, 1.0);
+    for (k, value) in row.iter_mut().enumerate() {
+        *value = *value * (binomial * scale);
+        binomial = next_binomial(binomial, n, k);
+        scale /= steps as f64;
+    }
+    for root in 1..n {
+        for j in (root..n).rev() {
+            row[j] = row[j] + row[j + 1] * root as f64;
+        }
+    }
+    let mut factorial = 1.0;
+    for (k, value) in row.iter_mut().enumerate() {
+        factorial *= k.max(1) as f64;
+        *value = *value * factorial;
+    }
+    row
 }
