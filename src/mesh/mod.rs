@@ -7,6 +7,7 @@ mod solid;
 mod topology;
 
 pub use defects::Defects;
+pub(crate) use defects::fans;
 pub use primitive::cuboid;
 pub use solid::Solid;
 pub use topology::Topology;
