@@ -7,7 +7,7 @@ mod solid;
 mod topology;
 
 pub use defects::Defects;
-pub use primitive::cuboid;
+pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;
 pub use topology::Topology;
 
