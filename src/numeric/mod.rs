@@ -1,1 +1,7 @@
 //! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.
+
+mod hash;
+mod wide;
+
+pub use hash::MixHasher;
+pub use wide::{Wide, rounded_quotient, scale_by_power_of_two};
