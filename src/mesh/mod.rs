@@ -8,7 +8,7 @@ mod topology;
 
 pub use defects::Defects;
 pub(crate) use defects::fans;
-pub use primitive::cuboid;
+pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;
 pub use topology::Topology;
 

@@ -3,6 +3,7 @@
 mod combine;
 pub mod exact;
 mod region;
+pub mod triangulate;
 
 pub use combine::{FillRule, combine};
 pub use region::{Region, RegionError};
