@@ -265,11 +265,6 @@ impl View {
     pub(super) fn pixels(&self, length: f64, depth: f64) -> f64 {
         if self.is_perspective() { length * self.zoom / depth } else { length * self.zoom }
     }
-
-    /// The nearness of points at `depth`.
-    pub(super) fn nearness(&self, depth: f64) -> f64 {
-        if self.is_perspective() { 1.0 / depth } else { -depth }
-    }
 }
 
 /// A half-space.
