@@ -160,8 +160,7 @@ mod tests {
     }
 
     fn border(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-        let all: Vec<[u32; 2]> =
-            triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        let all: Vec<[u32; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         let mut single: Vec<[u32; 2]> =
             all.iter().filter(|&&[a, b]| !all.contains(&[b, a])).copied().collect();
         single.sort_unstable();

@@ -45,9 +45,12 @@ fn face(words: &mut Words<'_>, vertices: usize, facets: &mut Facets) -> Result<(
         let name = word.split(|&b| b == b'/').next().unwrap_or_default();
         let index: i64 = parse(name).ok_or_else(|| words.error("the number of a vertex", word))?;
         // Positive ones count from 1, negative ones back from the last vertex so far.
-        let vertex = if index < 0 { index.checked_add_unsigned(vertices as u64) } else { index.checked_sub(1) };
+        let vertex =
+            if index < 0 { index.checked_add_unsigned(vertices as u64) } else { index.checked_sub(1) };
         let vertex = vertex.and_then(|v| u32::try_from(v).ok());
-        facets.corner(vertex.ok_or(ReadError { at, problem: Problem::NoSuchVertex { index, count: vertices } })?);
+        facets.corner(
+            vertex.ok_or(ReadError { at, problem: Problem::NoSuchVertex { index, count: vertices } })?,
+        );
     }
     facets.end_face(at)
 }
