@@ -2,11 +2,13 @@
 //! ([`Topology`]), and what can be asked of them.
 
 mod defects;
+mod measure;
 mod primitive;
 mod solid;
 mod topology;
 
 pub use defects::Defects;
+pub use measure::{Measures, area, components, volume};
 pub use primitive::cuboid;
 pub use solid::Solid;
 pub use topology::Topology;

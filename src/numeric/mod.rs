@@ -1,1 +1,3 @@
 //! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.
+
+pub mod compensated;
