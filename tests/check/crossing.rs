@@ -45,7 +45,11 @@ fn meeting(a: &Corners, b: &Corners) -> Meeting {
     match shared.len() {
         3 => Meeting::Crossing,
         2 => {
-            if lie_on_each_other(a, b, &shared) { Meeting::Crossing } else { Meeting::Fair }
+            if lie_on_each_other(a, b, &shared) {
+                Meeting::Crossing
+            } else {
+                Meeting::Fair
+            }
         }
         _ if pierces(a, b) || pierces(b, a) => Meeting::Crossing,
         _ if meets(a, b, &shared) || meets(b, a, &shared) => Meeting::Touching,

@@ -4,10 +4,11 @@
 mod crossing;
 mod pairs;
 
-pub(crate) use crossing::{Crossings, crossings};
+pub(crate) use crossing::crossings;
 
 use crate::oracle::exact::{Int, Lattice, cross, dot};
-use crate::oracle::{Truth, Union, rounded};
+use crate::oracle::surface::Union;
+use crate::oracle::{Truth, rounded};
 use dashu_ratio::RBig;
 use ogee::math::Vec3;
 use ogee::mesh::{Defects, Mesh};
@@ -94,21 +95,28 @@ fn sorted<'a>(components: impl Iterator<Item = (i64, &'a RBig)>) -> Vec<(i64, f6
 /// Vertices that are no true vertex, and true corners at which there is no vertex.
 fn misplaced(truth: &Truth, mesh: &Mesh, inputs: &[&Mesh]) -> Vec<String> {
     let reach = rounding(truth);
-    let near = |p: Vec3, list: &mut dyn Iterator<Item = Vec3>| list.any(|q| (p - q).abs().max_element() <= reach);
+    let near = |p: Vec3, list: &[Vec3]| list.iter().any(|&q| (p - q).abs().max_element() <= reach);
     let points: Vec<Vec3> = truth.points.iter().map(|(p, _)| rounded(p)).collect();
     let mut found = Vec::new();
     for &p in &mesh.positions {
-        let mut kept = inputs.iter().flat_map(|mesh| mesh.positions.iter().copied());
-        if !near(p, &mut points.iter().copied()) && !near(p, &mut kept) {
+        let on_contact = truth.contacts.iter().any(|edge| distance(p, edge) <= 4.0 * reach);
+        if !near(p, &points) && !on_contact && !inputs.iter().any(|input| near(p, &input.positions)) {
             found.push(format!("a vertex at {p} where nothing meets"));
         }
     }
     for (point, _) in points.iter().zip(&truth.points).filter(|(_, (_, corner))| *corner) {
-        if !near(*point, &mut mesh.positions.iter().copied()) {
+        if !near(*point, &mesh.positions) {
             found.push(format!("no vertex at the corner {point}"));
         }
     }
     found
+}
+
+/// From a point to a segment.
+fn distance(p: Vec3, [a, b]: &[Vec3; 2]) -> f64 {
+    let along = *b - *a;
+    let t = ((p - *a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+    (p - (*a + t * along)).length()
 }
 
 /// What keeps the mesh from being a closed manifold by index.

@@ -12,7 +12,8 @@
 mod arrange;
 pub(crate) mod exact;
 pub(crate) mod random;
-mod surface;
+pub(crate) mod surface;
+mod triangles;
 mod winding;
 
 use arrange::Scene;
@@ -22,7 +23,6 @@ use exact::{Int, Lattice, sum};
 use ogee::boolean::{Op, Tree};
 use ogee::math::Vec3;
 use ogee::mesh::Mesh;
-pub(crate) use surface::Union;
 use surface::{Face, Surface, pyramids};
 
 /// What is true of a result.
@@ -35,6 +35,8 @@ pub(crate) struct Truth {
     pub(crate) components: Vec<Component>,
     /// The points of the arrangement on the surface, with whether they are corners of it.
     pub(crate) points: Vec<([RBig; 3], bool)>,
+    /// The edges along which wedges touch. Results may need vertices on them, to tell their sides apart.
+    pub(crate) contacts: Vec<[Vec3; 2]>,
 }
 
 /// A connected piece of a surface. A cavity is one, with negative volume.
@@ -54,27 +56,42 @@ impl Truth {
         self.volume.to_f64().value()
     }
 
-    /// Whether every corner is a point that `f64` holds.
+    /// Whether `f64` holds every point of the arrangement on the surface.
     pub(crate) fn is_representable(&self) -> bool {
         let holds = |x: &RBig| RBig::try_from(x.to_f64().value()).as_ref() == Ok(x);
-        self.points.iter().filter(|(_, corner)| *corner).all(|(point, _)| point.iter().all(holds))
+        self.points.iter().all(|(point, _)| point.iter().all(holds))
     }
 }
 
 /// Evaluates `tree` over closed meshes with finite coordinates. A point is inside an operand where its winding
 /// number is at least one.
 pub(crate) fn evaluate(tree: &Tree, operands: &[&Mesh]) -> Truth {
+    let (lattice, scene) = scene_of(operands);
+    measure(lattice, &scene, &surface(tree, &scene))
+}
+
+/// The result itself, finely cut, with rounded positions: a kernel that is slow but right.
+pub(crate) fn mesh(tree: &Tree, operands: &[&Mesh]) -> Mesh {
+    let (lattice, scene) = scene_of(operands);
+    let surface = surface(tree, &scene);
+    let positions: Vec<Vec3> = points(lattice, &surface).iter().map(rounded).collect();
+    triangles::triangulated(&surface, &scene.planes, &positions)
+}
+
+fn scene_of(operands: &[&Mesh]) -> (Lattice, Scene) {
     let lattice = Lattice::holding(operands.iter().flat_map(|mesh| &mesh.positions));
-    let scene = Scene::new(lattice, operands);
-    let mut caster = winding::Caster::new(&scene);
-    let cells = scene.cells().into_iter().filter_map(|cell| {
+    (lattice, Scene::new(lattice, operands))
+}
+
+/// The cells at which the expression changes.
+fn surface(tree: &Tree, scene: &Scene) -> Surface {
+    let mut caster = winding::Caster::new(scene);
+    Surface::new(scene.cells().into_iter().filter_map(|cell| {
         let front = caster.in_front(&cell);
         let inside_front = holds(tree, &|i| front[i] >= 1);
         let inside_back = holds(tree, &|i| front[i] + cell.step[i] >= 1);
         (inside_front != inside_back).then_some((cell.plane, cell.polygon, inside_front))
-    });
-    let surface = Surface::new(cells);
-    measure(lattice, &scene, &surface)
+    }))
 }
 
 /// Whether the expression holds where `inside` says which operands a point is in.
@@ -104,15 +121,20 @@ fn measure(lattice: Lattice, scene: &Scene, surface: &Surface) -> Truth {
     let volumes = terms.into_iter().map(|terms| lattice.value(sum(terms), 3));
     let components: Vec<Component> =
         sewn.euler.iter().zip(volumes).map(|(&euler, volume)| Component { euler, volume }).collect();
-    let points: Vec<[RBig; 3]> =
-        surface.points.iter().map(|p| p.coordinates().map(|x| lattice.value(x, 1))).collect();
-    let positions: Vec<Vec3> = points.iter().map(|p| rounded(p)).collect();
+    let points = points(lattice, surface);
+    let positions: Vec<Vec3> = points.iter().map(rounded).collect();
+    let shared = sewn.seams.iter().filter(|seam| seam.shared);
     Truth {
         volume: sum(components.iter().map(|c| c.volume.clone()).collect()),
         area: surface.faces.iter().map(|face| area(&positions, face)).sum(),
         components,
+        contacts: shared.map(|seam| surface.joined(seam.forward).map(|p| positions[p])).collect(),
         points: points.into_iter().zip(sewn.is_corner).collect(),
     }
+}
+
+fn points(lattice: Lattice, surface: &Surface) -> Vec<[RBig; 3]> {
+    surface.points.iter().map(|p| p.coordinates().map(|x| lattice.value(x, 1))).collect()
 }
 
 /// The nearest `f64` point.

@@ -23,11 +23,32 @@ pub(crate) struct Surface {
 pub(crate) struct Sewn {
     /// For each face the number of its component.
     pub(crate) component: Vec<usize>,
+    /// For each corner of each face, in order, the vertex it is: points have one for each fan of faces.
+    pub(crate) vertex: Vec<usize>,
     /// For each component vertices minus edges plus faces.
     pub(crate) euler: Vec<i64>,
     /// Whether some copy of the point turns between three planes or more: it is a corner, not only a place where
     /// cells meet.
     pub(crate) is_corner: Vec<bool>,
+    pub(crate) seams: Vec<Seam>,
+}
+
+/// Two sides that belong together: one wedge of the solid lies between their faces.
+#[derive(Clone, Copy)]
+pub(crate) struct Seam {
+    pub(crate) forward: Side,
+    pub(crate) backward: Side,
+    /// Whether other wedges touch the same edge.
+    pub(crate) shared: bool,
+}
+
+/// A side of a face: from corner `index` to the next one.
+#[derive(Clone, Copy)]
+pub(crate) struct Side {
+    pub(crate) face: usize,
+    pub(crate) index: usize,
+    /// Whether it runs from the lower point to the higher one.
+    forward: bool,
 }
 
 impl Surface {
@@ -57,8 +78,8 @@ impl Surface {
         let first_corner: Vec<usize> = self.first_corners();
         let corner_count = first_corner[self.faces.len()];
         let (mut faces, mut corners) = (Union::new(self.faces.len()), Union::new(corner_count));
-        let pairs = self.pairs(planes);
-        for &(forward, backward) in &pairs {
+        let seams = self.seams(planes);
+        for &Seam { forward, backward, .. } in &seams {
             faces.join(forward.face, backward.face);
             let [a, b] = self.ends(forward, &first_corner);
             let [c, d] = self.ends(backward, &first_corner);
@@ -68,26 +89,27 @@ impl Surface {
         let (component, count) = faces.numbers();
         let mut euler = vec![0; count];
         component.iter().for_each(|&c| euler[c] += 1);
-        pairs.iter().for_each(|(side, _)| euler[component[side.face]] -= 1);
-        let mut planes_at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        seams.iter().for_each(|seam| euler[component[seam.forward.face]] -= 1);
+        let (vertex, vertex_count) = corners.numbers();
+        let mut planes_at: Vec<Vec<usize>> = vec![Vec::new(); vertex_count];
         let mut is_corner = vec![false; self.points.len()];
         for (index, face) in self.faces.iter().enumerate() {
             for (k, &point) in face.corners.iter().enumerate() {
-                let root = corners.root(first_corner[index] + k);
-                let met = planes_at.entry(root).or_insert_with(|| {
+                let met = &mut planes_at[vertex[first_corner[index] + k]];
+                if met.is_empty() {
                     euler[component[index]] += 1;
-                    Vec::new()
-                });
+                }
                 if !met.contains(&face.plane) {
                     met.push(face.plane);
                 }
                 is_corner[point] |= met.len() >= 3;
             }
         }
-        Sewn { component, euler, is_corner }
+        Sewn { component, vertex, euler, is_corner, seams }
     }
 
-    fn first_corners(&self) -> Vec<usize> {
+    /// Where the corners of each face begin, and their number.
+    pub(crate) fn first_corners(&self) -> Vec<usize> {
         let mut total = 0;
         let mut firsts = vec![0];
         firsts.extend(self.faces.iter().map(|face| {
@@ -97,14 +119,20 @@ impl Surface {
         firsts
     }
 
+    /// The two points that a side joins.
+    pub(crate) fn joined(&self, side: Side) -> [usize; 2] {
+        let corners = &self.faces[side.face].corners;
+        [corners[side.index], corners[(side.index + 1) % corners.len()]]
+    }
+
     /// The two corners at the ends of a side.
     fn ends(&self, side: Side, first_corner: &[usize]) -> [usize; 2] {
         let next = (side.index + 1) % self.faces[side.face].corners.len();
         [first_corner[side.face] + side.index, first_corner[side.face] + next]
     }
 
-    /// Sides that belong together: around each edge, those that bound one wedge of the solid.
-    fn pairs(&self, planes: &[Plane]) -> Vec<(Side, Side)> {
+    /// Pairs up the sides around each edge.
+    fn seams(&self, planes: &[Plane]) -> Vec<Seam> {
         let mut edges: BTreeMap<(usize, usize), Vec<Side>> = BTreeMap::new();
         for (face, Face { corners, .. }) in self.faces.iter().enumerate() {
             for index in 0..corners.len() {
@@ -113,20 +141,21 @@ impl Surface {
                 edges.entry((from.min(to), from.max(to))).or_default().push(side);
             }
         }
-        let mut pairs = Vec::new();
+        let mut seams = Vec::new();
         for ((low, high), mut sides) in edges {
             let along = self.points[low].toward(&self.points[high]);
             self.sort_around(&along, &mut sides, planes);
             // Turning counter-clockwise, the solid begins at a backward side and ends at a forward one.
             let start = sides.iter().position(|s| !s.forward).expect("an edge with sides both ways");
             sides.rotate_left(start);
+            let shared = sides.len() > 2;
             for wedge in sides.chunks(2) {
                 let &[backward, forward] = wedge else { panic!("an odd number of faces at an edge") };
                 assert!(forward.forward && !backward.forward, "faces at an edge do not alternate");
-                pairs.push((forward, backward));
+                seams.push(Seam { forward, backward, shared });
             }
         }
-        pairs
+        seams
     }
 
     /// Sorts the half-planes in which the faces of an edge lie by angle about it, counter-clockwise from the first.
@@ -155,15 +184,6 @@ fn compare_angles(along: &Int3, origin: &Int3, a: &Int3, b: &Int3) -> Ordering {
         _ => 3,
     };
     half(a).cmp(&half(b)).then_with(|| 0.cmp(&turn(a, b)))
-}
-
-/// A side of a face: from corner `index` to the next one.
-#[derive(Clone, Copy)]
-struct Side {
-    face: usize,
-    index: usize,
-    /// Whether it runs from the lower point to the higher one.
-    forward: bool,
 }
 
 /// Disjoint sets.
