@@ -4,7 +4,7 @@
 mod crossing;
 mod pairs;
 
-pub(crate) use crossing::crossings;
+pub(crate) use crossing::{Crossings, crossings};
 
 use crate::oracle::exact::{Int, Lattice, cross, dot};
 use crate::oracle::surface::Union;
