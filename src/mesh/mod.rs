@@ -7,7 +7,8 @@ mod solid;
 mod topology;
 
 pub use defects::Defects;
-pub use primitive::cuboid;
+pub(crate) use defects::fans;
+pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;
 pub use topology::Topology;
 

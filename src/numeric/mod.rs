@@ -1,1 +1,9 @@
 //! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.
+
+mod disjoint_sets;
+mod hash;
+mod wide;
+
+pub use disjoint_sets::DisjointSets;
+pub use hash::MixHasher;
+pub use wide::{Wide, rounded_quotient, scale_by_power_of_two};
