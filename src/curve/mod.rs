@@ -24,17 +24,23 @@ mod batch;
 mod bernstein;
 mod bezier;
 mod bounded;
+mod bounds;
 mod convert;
+mod cubic;
 mod differential;
 pub mod evaluate;
+mod rational;
 mod reduce;
 mod subdivide;
 
 pub use bernstein::BernsteinRoot;
 pub use bezier::{AnyBezier, Bernstein, Bezier, Cubic, Line, Quadratic};
 pub use bounded::Bounded;
+pub use bounds::{Bounds, bounding_box, convex_hull, turns};
 pub use convert::monomials;
+pub use cubic::CubicShape;
 pub use differential::{Curve, Frame, Jet, Tangents, rotation_minimizing_frames, tangents};
+pub use rational::Rational;
 pub use reduce::{Reduced, reduce};
 pub use subdivide::{Joined, join};
 

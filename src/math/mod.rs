@@ -5,9 +5,11 @@
 
 mod aabb;
 mod blend;
+mod circle;
 
 pub use aabb::Aabb;
 pub use blend::Blend;
+pub use circle::{degrees, sin_cos_degrees, unit_circle};
 pub use glam::{
     DAffine2 as Affine2, DAffine3 as Affine3, DMat2 as Mat2, DMat3 as Mat3, DMat4 as Mat4, DQuat as Quat,
     DVec2 as Vec2, DVec3 as Vec3, DVec4 as Vec4,
@@ -19,4 +21,10 @@ pub use libm::{
 /// Sine and cosine of an angle in radians.
 pub fn sin_cos(angle: f64) -> (f64, f64) {
     libm::sincos(angle)
+}
+
+/// The largest power of two that is not above `|x|`; zero for zero and subnormal numbers. Dividing by it is exact but
+/// for results that are subnormal.
+pub fn power_of_two_below(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
 }

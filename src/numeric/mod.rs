@@ -1,6 +1,14 @@
 //! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.
 
+pub mod compensated;
+mod disjoint_sets;
 pub mod double_double;
+mod hash;
 pub mod quadrature;
 pub mod roots;
 pub mod tridiagonal;
+mod wide;
+
+pub use disjoint_sets::DisjointSets;
+pub use hash::MixHasher;
+pub use wide::{Wide, rounded_quotient, scale_by_power_of_two};

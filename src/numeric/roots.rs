@@ -13,10 +13,19 @@ impl<const N: usize> Few<N> {
     /// No number.
     pub const NONE: Few<N> = Few { values: [0.0; N], count: 0 };
 
-    fn with(mut self, value: f64) -> Few<N> {
+    /// These numbers and one more, not smaller than they are.
+    ///
+    /// # Panics
+    /// When there are `N` already.
+    pub fn with(mut self, value: f64) -> Few<N> {
         self.values[self.count] = value;
         self.count += 1;
         self
+    }
+
+    /// Those numbers that `keep` holds for.
+    pub fn filtered(self, keep: impl Fn(f64) -> bool) -> Few<N> {
+        self.iter().filter(|&&value| keep(value)).fold(Few::NONE, |few, &value| few.with(value))
     }
 }
 
