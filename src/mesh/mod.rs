@@ -7,6 +7,7 @@ mod solid;
 mod topology;
 
 pub use defects::Defects;
+pub(crate) use defects::fans;
 pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;
 pub use topology::Topology;
