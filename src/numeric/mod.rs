@@ -4,11 +4,13 @@ pub mod compensated;
 mod disjoint_sets;
 pub mod double_double;
 mod hash;
+mod predicates;
 pub mod quadrature;
 pub mod roots;
 pub mod tridiagonal;
 mod wide;
 
 pub use disjoint_sets::DisjointSets;
-pub use hash::MixHasher;
+pub use hash::{ContentHasher, MixHasher};
+pub use predicates::{Unfit, fitted, orient2d, orient3d};
 pub use wide::{Wide, rounded_quotient, scale_by_power_of_two};
