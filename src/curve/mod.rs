@@ -20,6 +20,7 @@
 //! # Ok::<(), ogee::curve::CurveError>(())
 //! ```
 
+mod b_spline;
 mod batch;
 mod bernstein;
 mod bezier;
@@ -29,8 +30,10 @@ mod convert;
 mod cubic;
 mod differential;
 pub mod evaluate;
+mod interpolate;
 mod rational;
 mod reduce;
+mod spline;
 mod subdivide;
 
 pub use bernstein::BernsteinRoot;
@@ -40,8 +43,10 @@ pub use bounds::{Bounds, bounding_box, convex_hull, turns};
 pub use convert::monomials;
 pub use cubic::CubicShape;
 pub use differential::{Curve, Frame, Jet, Tangents, rotation_minimizing_frames, tangents};
+pub use interpolate::{Boundary, Spacing};
 pub use rational::Rational;
 pub use reduce::{Reduced, reduce};
+pub use spline::{Continuity, Joint, Spline};
 pub use subdivide::{Joined, join};
 
 use crate::math::Blend;

@@ -1,7 +1,7 @@
 use super::differential::{Curve, Jet, jet};
 use super::subdivide::{elevate, restrict};
 use super::{CurveError, check_finite, check_unit, evaluate};
-use crate::math::{Blend, Vec3, Vec4};
+use crate::math::{Blend as _, Vec3, Vec4};
 
 /// A rational Bézier curve in space: control points with positive weights, any degree. Conics are exact.
 ///

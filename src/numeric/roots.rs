@@ -143,11 +143,11 @@ mod tests {
         assert_eq!(*quadratic(-1.0, 3.0, -2.0), [1.0, 2.0]);
         assert_eq!(*quadratic(1.0, -2.0, 1.0), [1.0]);
         assert_eq!(*quadratic(1.0, 0.0, 0.0), [0.0]);
-        assert_eq!(*quadratic(1.0, 0.0, 1.0), []);
+        assert!(quadratic(1.0, 0.0, 1.0).is_empty());
         assert_eq!(*quadratic(0.0, 2.0, -1.0), [0.5]);
-        assert_eq!(*quadratic(0.0, 0.0, 1.0), []);
-        assert_eq!(*quadratic(0.0, 0.0, 0.0), []);
-        assert_eq!(*quadratic(f64::NAN, 0.0, 0.0), []);
+        assert!(quadratic(0.0, 0.0, 1.0).is_empty());
+        assert!(quadratic(0.0, 0.0, 0.0).is_empty());
+        assert!(quadratic(f64::NAN, 0.0, 0.0).is_empty());
         // Kahan's example: the naive discriminant vanishes.
         let roots = quadratic(94_906_265.625, -2.0 * 94_906_267.0, 94_906_268.375);
         assert_eq!(*roots, [1.0, 1.000_000_028_975_958_3]);
