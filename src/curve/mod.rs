@@ -26,11 +26,14 @@ mod bernstein;
 mod bezier;
 mod bounded;
 mod bounds;
+mod closed;
 mod convert;
 mod cubic;
 mod differential;
 pub mod evaluate;
 mod interpolate;
+mod length;
+mod nearest;
 mod rational;
 mod reduce;
 mod spline;
@@ -40,10 +43,13 @@ pub use bernstein::BernsteinRoot;
 pub use bezier::{AnyBezier, Bernstein, Bezier, Cubic, Line, Quadratic};
 pub use bounded::Bounded;
 pub use bounds::{Bounds, bounding_box, convex_hull, turns};
+pub use closed::{Moments, Winding, moments, winding};
 pub use convert::monomials;
 pub use cubic::CubicShape;
 pub use differential::{Curve, Frame, Jet, Tangents, rotation_minimizing_frames, tangents};
 pub use interpolate::{Boundary, Spacing};
+pub use length::{ArcLength, length, speed_minima};
+pub use nearest::{Nearest, nearest, nearest_all};
 pub use rational::Rational;
 pub use reduce::{Reduced, reduce};
 pub use spline::{Continuity, Joint, Spline};
@@ -108,6 +114,15 @@ pub enum CurveError {
     },
     /// A path that must be closed is open.
     Open,
+    /// The degree is too high for this algorithm.
+    Degree {
+        /// The degree.
+        actual: usize,
+        /// The highest that it takes.
+        most: usize,
+    },
+    /// Two curves run so near to one another for so long, without being one, that their meetings cannot be told apart.
+    TooClose,
     /// The equations of an interpolation have no unique solution at this size.
     Singular,
 }
@@ -127,6 +142,8 @@ impl fmt::Display for CurveError {
             CurveError::Weight { index } => write!(f, "weight {index} is not a positive number"),
             CurveError::Gap { piece } => write!(f, "piece {piece} does not start where the one before it ends"),
             CurveError::Open => write!(f, "the path is not closed"),
+            CurveError::Degree { actual, most } => write!(f, "degree {actual} where {most} is the highest"),
+            CurveError::TooClose => write!(f, "the curves are too close to one another to tell where they meet"),
             CurveError::Singular => write!(f, "the equations of the interpolation are singular"),
         }
     }
@@ -140,6 +157,12 @@ fn check_finite<P: Blend>(points: &[P]) -> Result<(), CurveError> {
         Some(index) => Err(CurveError::NotFinite { index }),
         None => Ok(()),
     }
+}
+
+/// Checks that products of two such curves have binomials that do not overflow.
+fn check_degree(actual: usize) -> Result<(), CurveError> {
+    const MOST: usize = 500;
+    if actual <= MOST { Ok(()) } else { Err(CurveError::Degree { actual, most: MOST }) }
 }
 
 /// Checks that a tolerance or accuracy is a positive finite number.

@@ -1,10 +1,12 @@
-//! Smooth to flat: polygons extruded and revolved.
+//! Smooth to flat: curves flattened, polygons extruded and revolved.
 
 mod extrude;
+mod flatten;
 mod profile;
 mod revolve;
 
 pub use extrude::{LinearSweep, linear_extrude};
+pub use flatten::{Flattened, flatten, flatten_spline};
 pub use revolve::{RotateSweep, rotate_extrude};
 
 use crate::mesh::TooLarge;

@@ -1,0 +1,365 @@
+//! Curves to polylines: few points, and every chord certified.
+
+use crate::curve::{Bernstein, Cubic, CurveError, Spline, speed_minima};
+use crate::math::Blend;
+
+/// A polyline in place of a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flattened<P> {
+    /// Points of the curve, in order, its ends included. One point when the curve is a point.
+    pub points: Vec<P>,
+    /// The parameter of each point.
+    pub parameters: Vec<f64>,
+    /// Bound of the distance of curve and polyline in the sense of Fréchet: both can be walked from end to end, never
+    /// back, so that the walkers are never farther apart. At most the tolerance.
+    pub error: f64,
+}
+
+/// Flattens a curve to a polyline that is within `tolerance` of it, in model units, with few points.
+///
+/// From each point the longest chord that can be certified is taken, up to a few parts in a hundred. The certificate:
+/// where the control polygon of the part advances along the chord throughout, so does the curve, and the distance is
+/// that of the two inner control points from the chord, blended, whose largest value is found in closed form (at most
+/// 3/4 of the larger one, and 4/9 where they lie on opposite sides); elsewhere, around turns, the same bound of the
+/// distance of points at the same parameter is taken, so that turns are not cut off.
+///
+/// # Errors
+/// [`CurveError::Tolerance`] when the tolerance is not a positive number, [`CurveError::ToleranceTooFine`] when it is
+/// below the rounding of the curve's coordinates.
+pub fn flatten<C: Bernstein>(curve: &C, tolerance: f64) -> Result<Flattened<C::Vector>, CurveError> {
+    let mut out = begin(curve.points(), tolerance)?;
+    append(curve, tolerance, [0.0, 1.0], &mut out);
+    Ok(finished(out, curve.points()))
+}
+
+/// Flattens a spline as [`flatten`] does its pieces; joints are points of the polyline. A closed spline ends with its
+/// first point again.
+///
+/// # Errors
+/// As [`flatten`].
+pub fn flatten_spline<P: Blend>(spline: &Spline<P>, tolerance: f64) -> Result<Flattened<P>, CurveError> {
+    let mut out = begin(spline.points(), tolerance)?;
+    for (piece, knots) in spline.pieces().zip(spline.knots().windows(2)) {
+        append(&piece, tolerance, [knots[0], knots[1]], &mut out);
+    }
+    Ok(finished(out, spline.points()))
+}
+
+/// Rounding of a point computed from these control points.
+fn rounding<P: Blend>(points: &[P]) -> f64 {
+    let size = points.iter().fold(0.0, |most: f64, point| most.max(point.max_abs()));
+    8.0 * points.len().min(8) as f64 * f64::EPSILON * size
+}
+
+fn begin<P: Blend>(points: &[P], tolerance: f64) -> Result<Flattened<P>, CurveError> {
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(CurveError::Tolerance { value: tolerance });
+    }
+    let finest = 4.0 * rounding(points);
+    if tolerance < finest {
+        return Err(CurveError::ToleranceTooFine { value: tolerance, finest });
+    }
+    Ok(Flattened { points: Vec::new(), parameters: Vec::new(), error: 0.0 })
+}
+
+/// One point for a curve that never leaves it.
+fn finished<P: Blend>(mut out: Flattened<P>, control: &[P]) -> Flattened<P> {
+    if control.iter().all(|&point| point == control[0]) {
+        out.points.truncate(1);
+        out.parameters.truncate(1);
+    }
+    out
+}
+
+/// Adds the points of a curve that runs over the parameters `low` to `high`; its start only when there is none yet.
+fn append<C: Bernstein>(curve: &C, tolerance: f64, [low, high]: [f64; 2], out: &mut Flattened<C::Vector>) {
+    let outward = |t: f64| if t == 1.0 { high } else { low + t * (high - low) };
+    if out.points.is_empty() {
+        out.points.push(curve.start());
+        out.parameters.push(low);
+    }
+    let mut walk = Walk::new(curve, tolerance);
+    for stop in stops(curve) {
+        while walk.t < stop {
+            let chord = walk.advance(stop);
+            out.error = out.error.max(chord.error);
+            out.points.push(chord.end);
+            out.parameters.push(outward(walk.t));
+        }
+    }
+}
+
+/// Where chords must end: the end of the curve, and before it cusps and turns. Those are rare, and looked for only when
+/// the control polygon turns back; to miss one costs points, not truth.
+fn stops<C: Bernstein>(curve: &C) -> Vec<f64> {
+    let steps: Vec<C::Vector> = curve.points().windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let turns_back = steps.windows(2).any(|pair| pair[0].inner(pair[1]) < 0.0);
+    let mut stops = Vec::new();
+    if turns_back {
+        let longest = steps.iter().fold(0.0, |most: f64, step| most.max(step.norm()));
+        let slow = |&t: &f64| velocity(curve, t).norm() < 0.01 * longest;
+        stops = speed_minima(curve).into_iter().filter(slow).collect();
+    }
+    stops.push(1.0);
+    stops
+}
+
+/// The derivative over the degree.
+fn velocity<C: Bernstein>(curve: &C, t: f64) -> C::Vector {
+    let rows = curve.construction(t);
+    match &rows[..] {
+        [.., row, _] => row[1] - row[0],
+        _ => C::Vector::ZERO,
+    }
+}
+
+/// A certified chord.
+struct Chord<P> {
+    end: P,
+    error: f64,
+}
+
+/// The state of a walk along a curve.
+struct Walk<'a, C: Bernstein> {
+    curve: &'a C,
+    /// Control points when the degree is at most 3, for which parts are found from ends and derivatives.
+    cubic: Option<Cubic<C::Vector>>,
+    tolerance: f64,
+    rounding: f64,
+    t: f64,
+    /// The step that is expected to fill the tolerance.
+    step: f64,
+}
+
+/// A chord that uses this share of the tolerance is long enough.
+const ENOUGH: f64 = 0.85;
+/// Chords of one start that fit before the longest of them is taken.
+const MOST_FITS: u32 = 5;
+/// The share of the tolerance that a guess aims at.
+const AIM: f64 = 0.95;
+
+impl<'a, C: Bernstein> Walk<'a, C> {
+    fn new(curve: &'a C, tolerance: f64) -> Walk<'a, C> {
+        let points = curve.points();
+        let cubic = match *points {
+            [a, b, c, d] => Cubic::new([a, b, c, d]).ok(),
+            [a, b, c] => crate::curve::Quadratic::new([a, b, c]).ok().map(|low| low.elevated()),
+            [a, b] => crate::curve::Line::new([a, b]).ok().map(|low| low.elevated()),
+            _ => None,
+        };
+        Walk { curve, cubic, tolerance, rounding: rounding(points), t: 0.0, step: 0.25 }
+    }
+
+    /// Takes the longest chord towards `stop`, nearly, and moves to its end.
+    fn advance(&mut self, stop: f64) -> Chord<C::Vector> {
+        let from = self.t;
+        let mut longest: Option<(f64, Chord<C::Vector>)> = None;
+        let (mut too_long, mut step, mut fits) = (f64::INFINITY, self.step, 0);
+        loop {
+            let to = if from + 1.001 * step >= stop { stop } else { (from + step).max(from.next_up()) };
+            let (width, chord) = (to - from, self.certify(from, to));
+            let fill = chord.error / self.tolerance;
+            let guess = width * (AIM / fill.max(1e-4)).sqrt();
+            // Neighbouring parameters: what is left is rounding.
+            if fill <= 1.0 || to <= from.next_up() {
+                fits += 1;
+                self.step = guess;
+                if fill >= ENOUGH || to == stop || fits == MOST_FITS {
+                    self.t = to;
+                    return chord;
+                }
+                longest = Some((to, chord));
+                step = guess.max(1.05 * width).min(0.5 * width + 0.5 * too_long);
+            } else if let Some((to, chord)) = longest {
+                self.t = to;
+                return chord;
+            } else {
+                too_long = width;
+                step = guess.clamp(0.1 * width, 0.9 * width);
+            }
+        }
+    }
+
+    /// The chord between two parameters and a bound of its distance.
+    fn certify(&self, from: f64, to: f64) -> Chord<C::Vector> {
+        match &self.cubic {
+            Some(cubic) => {
+                let part = cubic.subcurve(from, to).unwrap_or(*cubic);
+                Chord { end: part.end(), error: cubic_bound(&part.to_array()) + self.rounding }
+            }
+            None => match self.curve.subcurve(from, to) {
+                Ok(part) => Chord { end: part.end(), error: general_bound(part.points()) + self.rounding },
+                Err(_) => Chord { end: self.curve.eval(to), error: f64::INFINITY },
+            },
+        }
+    }
+}
+
+/// Whether the control polygon never steps back along its chord.
+fn advances<P: Blend>(points: &[P], chord: P) -> bool {
+    chord != P::ZERO && points.windows(2).all(|pair| (pair[1] - pair[0]).inner(chord) >= 0.0)
+}
+
+/// What the distance is made of: offsets of control points from the chord, across it where the polygon advances, else
+/// from where they would be on a chord walked evenly.
+fn offset<P: Blend>(point: P, start: P, chord: P, share: f64, across: bool) -> P {
+    let from_start = point - start;
+    let along = if across { from_start.inner(chord) / chord.inner(chord) } else { share };
+    from_start - chord * along
+}
+
+fn cubic_bound<P: Blend>(points: &[P; 4]) -> f64 {
+    let [a, b, c, d] = *points;
+    let chord = d - a;
+    let across = advances(points, chord);
+    let (v, w) = (offset(b, a, chord, 1.0 / 3.0, across), offset(c, a, chord, 2.0 / 3.0, across));
+    // The second offset split into a multiple of the first and a rest across it; in the plane there is none.
+    let square = v.inner(v);
+    let multiple = if square > 0.0 { v.inner(w) / square } else { 0.0 };
+    let rest = w - v * multiple;
+    let (main, side) = (square.sqrt() * peak(multiple), 4.0 / 9.0 * rest.norm());
+    (main * main + side * side).sqrt()
+}
+
+/// The largest magnitude over [0, 1] of `3 t (1 - t) ((1 - t) + r t)`.
+fn peak(r: f64) -> f64 {
+    let f = |t: f64| (3.0 * t * (1.0 - t) * ((1.0 - t) + r * t)).abs();
+    // Zeros of the derivative: 1 + 2 (r - 2) t - 3 (r - 1) t^2.
+    let (half, square) = (r - 2.0, -3.0 * (r - 1.0));
+    let root = (half * half - square).max(0.0).sqrt();
+    // Both roots by the stable form, from their product 1 / square.
+    let big = -half + if half < 0.0 { root } else { -root };
+    let [first, second] = [big / square, 1.0 / big].map(|t| if t > 0.0 && t < 1.0 { f(t) } else { 0.0 });
+    first.max(second) * (1.0 + 8.0 * f64::EPSILON)
+}
+
+/// The bound for any degree: inner basis functions sum up to at most `1 - 2^(1-n)`.
+fn general_bound<P: Blend>(points: &[P]) -> f64 {
+    let n = points.len() - 1;
+    if n == 0 {
+        return 0.0;
+    }
+    let (start, chord) = (points[0], points[n] - points[0]);
+    let across = advances(points, chord);
+    let offsets = points.iter().enumerate();
+    let largest = offsets
+        .map(|(i, &point)| offset(point, start, chord, i as f64 / n as f64, across).norm())
+        .fold(0.0, f64::max);
+    largest * (1.0 - 0.5_f64.powi(n as i32 - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::{AnyBezier, Boundary};
+    use crate::math::{Vec2, Vec3};
+    use proptest::prelude::*;
+
+    fn cubic(points: [(f64, f64); 4]) -> Cubic<Vec2> {
+        Cubic::new(points.map(Vec2::from)).unwrap()
+    }
+
+    /// The farthest that dense points of the curve are from the chord over their own parameters.
+    fn worst<P: Blend, C: Bernstein<Vector = P>>(curve: &C, flat: &Flattened<P>) -> f64 {
+        let mut worst: f64 = 0.0;
+        for (ends, t) in flat.points.windows(2).zip(flat.parameters.windows(2)) {
+            let chord = ends[1] - ends[0];
+            for k in 0..=32 {
+                let p = curve.eval(t[0] + (t[1] - t[0]) * f64::from(k) / 32.0) - ends[0];
+                let square = chord.inner(chord);
+                let along = if square > 0.0 { (p.inner(chord) / square).clamp(0.0, 1.0) } else { 0.0 };
+                worst = worst.max((p - chord * along).norm());
+            }
+        }
+        worst
+    }
+
+    fn wang(curve: &Cubic<Vec2>, tolerance: f64) -> f64 {
+        let [a, b, c, d] = curve.to_array();
+        let second = (a - b * 2.0 + c).length().max((b - c * 2.0 + d).length());
+        (0.75 * second / tolerance).sqrt().ceil().max(1.0)
+    }
+
+    #[test]
+    fn few_chords_and_none_too_far() {
+        let (mut chords, mut wangs) = (0.0, 0.0);
+        let mut state = 1_u64;
+        let mut random = || {
+            // Knuth's linear congruential generator.
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for case in 0..10_000 {
+            let curve = cubic([(); 4].map(|()| (100.0 * random(), 100.0 * random())));
+            let tolerance = [1.0, 0.1, 0.01][case % 3];
+            let flat = flatten(&curve, tolerance).unwrap();
+            assert!(flat.error <= tolerance);
+            if case % 10 < 3 {
+                let worst = worst(&curve, &flat);
+                assert!(worst <= flat.error, "{curve:?} at {tolerance}: {worst}");
+            }
+            chords += (flat.points.len() - 1) as f64;
+            wangs += wang(&curve, tolerance);
+        }
+        assert!(chords <= 0.55 * wangs, "{}", chords / wangs);
+    }
+
+    #[test]
+    fn turns_are_kept() {
+        let line = cubic([(0.0, 0.0), (200.0, 0.0), (-100.0, 0.0), (100.0, 0.0)]);
+        for tolerance in [1.0, 1e-3, 1e-6, 1e-9] {
+            let flat = flatten(&line, tolerance).unwrap();
+            let length: f64 = flat.points.windows(2).map(|pair| (pair[1] - pair[0]).length()).sum();
+            assert!((length - 189.44271909999158786).abs() < 8.0 * tolerance && flat.points.len() <= 12);
+        }
+        let cusp = cubic([(0.0, 0.0), (100.0, 100.0), (0.0, 100.0), (100.0, 0.0)]);
+        let flat = flatten(&cusp, 0.01).unwrap();
+        assert!(flat.points.iter().any(|point| (*point - Vec2::new(50.0, 75.0)).length() < 0.01));
+    }
+
+    #[test]
+    fn degenerate_and_wrong_input() {
+        let point = cubic([(3.0, 4.0); 4]);
+        let flat = flatten(&point, 1e-3).unwrap();
+        assert_eq!((flat.points.len(), flat.parameters), (1, vec![0.0]));
+        let straight = cubic([(0.0, 0.0), (0.0, 0.0), (100.0, 50.0), (100.0, 50.0)]);
+        assert_eq!(flatten(&straight, 1e-9).unwrap().points.len(), 2);
+        for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(flatten(&point, value), Err(CurveError::Tolerance { .. })));
+        }
+        assert!(matches!(flatten(&straight, 1e-16), Err(CurveError::ToleranceTooFine { .. })));
+        assert_eq!(flatten(&cubic([(0.0, 0.0), (1e308, 0.0), (1e308, 1e308), (0.0, 0.0)]), 1e300).is_ok(), true);
+    }
+
+    #[test]
+    fn closed_splines_close() {
+        let points = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)].map(Vec2::from);
+        let ring = Spline::periodic(&points, &[0.0, 1.0, 2.0, 3.0, 4.0]).unwrap();
+        let flat = flatten_spline(&ring, 1e-3).unwrap();
+        assert_eq!((flat.points[0], flat.parameters[0]), (points[0], 0.0));
+        assert_eq!(flat.points[flat.points.len() - 1], points[0]);
+        assert!(flat.parameters.windows(2).all(|pair| pair[0] < pair[1]));
+        for (t, p) in [(1.0, points[1]), (2.0, points[2])] {
+            let place = flat.parameters.iter().position(|&s| s == t).unwrap();
+            assert_eq!(flat.points[place], p);
+        }
+        let natural = Boundary::Second(Vec2::ZERO);
+        let open = Spline::interpolate(&points, &[0.0, 1.0, 2.0, 3.0], natural, natural).unwrap();
+        assert!(flatten_spline(&open, 1e-3).unwrap().error <= 1e-3);
+    }
+
+    proptest! {
+        #[test]
+        fn every_degree_in_space(
+            points in prop::collection::vec((-9.0..9.0_f64, -9.0..9.0_f64, -9.0..9.0_f64), 1..9),
+            tolerance in 1e-4..1.0_f64,
+        ) {
+            let curve = AnyBezier::new(points.into_iter().map(Vec3::from).collect()).unwrap();
+            let flat = flatten(&curve, tolerance).unwrap();
+            prop_assert!(flat.error <= tolerance);
+            let worst = worst(&curve, &flat);
+            prop_assert!(worst <= flat.error + 1e-14);
+            prop_assert_eq!(flat.points[flat.points.len() - 1], curve.end());
+        }
+    }
+}
