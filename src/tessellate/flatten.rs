@@ -2,6 +2,7 @@
 
 use crate::curve::{Bernstein, Cubic, CurveError, Spline, speed_minima};
 use crate::math::Blend;
+use crate::numeric::scale_by_power_of_two;
 
 /// A polyline in place of a curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,15 +79,29 @@ fn append<C: Bernstein>(curve: &C, tolerance: f64, [low, high]: [f64; 2], out: &
         out.points.push(curve.start());
         out.parameters.push(low);
     }
-    let mut walk = Walk::new(curve, tolerance);
-    for stop in stops(curve) {
+    let shift = shift_to_unit(curve.points());
+    let scaled = |x: f64, shift: i32| if shift == 0 { x } else { scale_by_power_of_two(x, shift) };
+    // Scaling towards size 1 keeps numbers finite.
+    let unit = curve.map(|point| point.map(|x| scaled(x, shift))).unwrap_or_else(|_| curve.clone());
+    let mut walk = Walk::new(&unit, scaled(tolerance, shift));
+    for stop in stops(&unit) {
         while walk.t < stop {
             let chord = walk.advance(stop);
-            out.error = out.error.max(chord.error);
-            out.points.push(chord.end);
+            out.error = out.error.max(scaled(chord.error, -shift));
+            out.points.push(chord.end.map(|x| scaled(x, -shift)));
             out.parameters.push(outward(walk.t));
         }
     }
+}
+
+/// The power of two that brings points near size 1 whose squares could leave the range of numbers; 0 for others.
+fn shift_to_unit<P: Blend>(points: &[P]) -> i32 {
+    let size = points.iter().fold(0.0, |most: f64, point| most.max(point.max_abs()));
+    if size == 0.0 || (1e-100..1e100).contains(&size) {
+        return 0;
+    }
+    let exponent = (size.to_bits() >> 52) as i32 - 1023;
+    -exponent.clamp(-1000, 1000)
 }
 
 /// Where chords must end: the end of the curve, and before it cusps and turns. Those are rare, and looked for only when
