@@ -3,7 +3,8 @@
 use num_bigint::BigInt;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use ogee::curve::evaluate::{
-    bernstein, compensated, de_casteljau, forward_differences, horner, horner_bernstein, schumaker_volk, wozny_chudy,
+    bernstein, compensated, de_casteljau, forward_differences, horner, horner_bernstein, schumaker_volk,
+    wozny_chudy,
 };
 use ogee::curve::{AnyBezier, Bernstein, Bounded, Cubic, monomials};
 use ogee::math::Vec2;
@@ -85,7 +86,8 @@ fn wild_points(degree: usize) -> Vec<f64> {
 #[test]
 fn each_method_keeps_its_bound() {
     type Method = fn(&[f64], f64) -> f64;
-    let methods: [(&str, Method, fn(f64) -> f64); 5] = [
+    type Bound = fn(f64) -> f64;
+    let methods: [(&str, Method, Bound); 5] = [
         ("de Casteljau", de_casteljau, |n| 3.0 * n),
         ("Bernstein", bernstein, |n| 3.0 * n),
         ("Horner-Bernstein", horner_bernstein, |n| 3.0 * n + 1.0),

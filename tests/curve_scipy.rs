@@ -44,7 +44,12 @@ fn values_and_derivatives_agree() {
             assert!(near(jet.first, first, 10.0), "{} at {t}: {} for {first}", case["name"], jet.first);
             // Second derivatives jump at the knots of C1 splines, where both sides are right.
             if !knots.contains(&t) {
-                assert!(near(jet.second, second, 1e3), "{} at {t}: {} for {second}", case["name"], jet.second);
+                assert!(
+                    near(jet.second, second, 1e3),
+                    "{} at {t}: {} for {second}",
+                    case["name"],
+                    jet.second
+                );
             }
         }
     }

@@ -1,5 +1,5 @@
 use super::spline::{Spline, uniform_knots};
-use super::{Cubic, CurveError, Bernstein, check_finite};
+use super::{Bernstein, Cubic, CurveError, check_finite};
 use crate::math::Blend;
 
 impl<P: Blend> Spline<P> {

@@ -1,9 +1,9 @@
 //! Where a curve turns, and the box and hull around it.
 
+use super::Bernstein;
 use super::bernstein::{BernsteinRoot, roots};
 use super::bounded::eval_bounded;
 use super::subdivide::{restrict, with_unit_size};
-use super::Bernstein;
 use crate::math::{Blend, Vec2};
 use crate::numeric::orient2d;
 
@@ -30,7 +30,10 @@ pub fn turns<C: Bernstein>(curve: &C, axis: usize) -> Vec<BernsteinRoot> {
 /// The turns of a polynomial of about unit size.
 fn turns_of(values: &[f64]) -> Vec<BernsteinRoot> {
     let differences: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if differences.is_empty() || differences.iter().all(|&d| d >= 0.0) || differences.iter().all(|&d| d <= 0.0) {
+    if differences.is_empty()
+        || differences.iter().all(|&d| d >= 0.0)
+        || differences.iter().all(|&d| d <= 0.0)
+    {
         // Monotone: at most the ends, where a zero derivative is no turn.
         return Vec::new();
     }
@@ -111,7 +114,8 @@ mod tests {
 
     #[test]
     fn known_boxes() {
-        let curve = Cubic::new([(0.0, 10.0), (-10.0, 10.0), (180.0, 10.0), (60.0, 10.0)].map(Vec2::from)).unwrap();
+        let curve =
+            Cubic::new([(0.0, 10.0), (-10.0, 10.0), (180.0, 10.0), (60.0, 10.0)].map(Vec2::from)).unwrap();
         let Bounds { min, max } = bounding_box(&curve);
         assert!((min.x - -0.383376013856379).abs() < 1e-14 && (max.x - 99.8835682476126).abs() < 1e-12);
         assert_eq!((min.y, max.y), (10.0, 10.0));
@@ -128,7 +132,10 @@ mod tests {
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.5), (0.5, 0.0)].map(Vec2::from);
         assert_eq!(convex_hull(&square), [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(Vec2::from));
         assert_eq!(convex_hull(&[Vec2::X; 4]), [Vec2::X]);
-        assert_eq!(convex_hull(&[Vec2::ZERO, Vec2::X, Vec2::splat(0.0), Vec2::X * 0.5]), [Vec2::ZERO, Vec2::X]);
+        assert_eq!(
+            convex_hull(&[Vec2::ZERO, Vec2::X, Vec2::splat(0.0), Vec2::X * 0.5]),
+            [Vec2::ZERO, Vec2::X]
+        );
     }
 
     proptest! {

@@ -38,7 +38,8 @@ pub fn moments(path: &Spline<Vec2>) -> Result<Moments, CurveError> {
         size += reach * velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
         for (k, sum) in sums.iter_mut().enumerate() {
             *sum += integrate(GAUSS_8, 0.0, 1.0, |t| {
-                let (p, v) = (super::evaluate::de_casteljau(&points, t), super::evaluate::de_casteljau(&velocity, t));
+                let (p, v) =
+                    (super::evaluate::de_casteljau(&points, t), super::evaluate::de_casteljau(&velocity, t));
                 let across = p.perp_dot(v);
                 // Green's forms of degree d + 2 are the monomial times x dy - y dx over d + 2.
                 match k {

@@ -64,7 +64,7 @@ pub fn intersect_line<C: Bernstein<Vector = Vec2>>(
     if from == to {
         return Err(CurveError::TooFewPoints { actual: 1, least: 2 });
     }
-    let direction = (to * 0.25 - from * 0.25).normalize_by_size();
+    let direction = unit(to * 0.25 - from * 0.25);
     let offsets: Vec<Vec2> = curve.points().iter().map(|&p| p * 0.25 - from * 0.25).collect();
     let size = offsets.iter().fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
     let [a, b] = if size > 0.0 { reciprocal_powers(size) } else { [1.0, 1.0] };
@@ -92,15 +92,9 @@ pub fn intersect_line<C: Bernstein<Vector = Vec2>>(
     })
 }
 
-trait NormalizeBySize {
-    fn normalize_by_size(self) -> Self;
-}
-
-impl NormalizeBySize for Vec2 {
-    /// The unit vector, whatever the size.
-    fn normalize_by_size(self) -> Vec2 {
-        (self / self.abs().max_element()).normalize()
-    }
+/// The unit vector, whatever the size.
+fn unit(v: Vec2) -> Vec2 {
+    (v / v.abs().max_element()).normalize()
 }
 
 /// Where two curves meet, ascending along the first.
@@ -151,13 +145,15 @@ where
 pub fn self_intersections<C: Bernstein<Vector = Vec2>>(curve: &C) -> Result<Vec<Meeting>, CurveError> {
     let mut cuts = vec![0.0];
     simple_parts(curve, 0.0, 1.0, &mut cuts)?;
-    let parts: Vec<C> = cuts.windows(2).map(|cut| curve.subcurve(cut[0], cut[1])).collect::<Result<_, _>>()?;
+    let parts: Vec<C> =
+        cuts.windows(2).map(|cut| curve.subcurve(cut[0], cut[1])).collect::<Result<_, _>>()?;
     let mut found: Vec<Meeting> = Vec::new();
     for i in 0..parts.len() {
         for j in i + 1..parts.len() {
             for meeting in intersect(&parts[i], &parts[j], None)? {
                 let outward = |k: usize, t: f64| cuts[k] + t * (cuts[k + 1] - cuts[k]);
-                let (first, second) = (meeting.first.map(|t| outward(i, t)), meeting.second.map(|t| outward(j, t)));
+                let (first, second) =
+                    (meeting.first.map(|t| outward(i, t)), meeting.second.map(|t| outward(j, t)));
                 let joint = (first[0] - second[0]).abs() < 1e-6 && meeting.contact != Contact::Overlap;
                 let known = found.iter().any(|other| {
                     (other.first[0] - first[0]).abs() < SAME && (other.second[0] - second[0]).abs() < SAME
@@ -391,7 +387,8 @@ impl<'a> Search<'a> {
             let whole = Part::of(&self.scene.b, 0.0, 1.0);
             for (low, high) in [(0.0, overlap.first[0]), (overlap.first[1], 1.0)] {
                 // The joint itself would be found again and again: keep away by more than rounding.
-                let (low, high) = (if low > 0.0 { low + 1e-6 } else { low }, if high < 1.0 { high - 1e-6 } else { high });
+                let (low, high) =
+                    (if low > 0.0 { low + 1e-6 } else { low }, if high < 1.0 { high - 1e-6 } else { high });
                 if low < high {
                     self.examine(&Part::of(&self.scene.a, low, high), &whole)?;
                 }
@@ -413,13 +410,12 @@ impl<'a> Search<'a> {
         if a.strip_misses(b, self.gap) || b.strip_misses(a, self.gap) {
             return Ok(());
         }
-        if let (Some(p), Some(q)) = (a.cone(), b.cone()) {
-            if apart(p, q) {
-                if let Some(pair) = self.crossing(a, b) {
-                    self.crossings.push(pair);
-                    return Ok(());
-                }
-            }
+        if let (Some(p), Some(q)) = (a.cone(), b.cone())
+            && apart(p, q)
+            && let Some(pair) = self.crossing(a, b)
+        {
+            self.crossings.push(pair);
+            return Ok(());
         }
         if a.width().max(b.width()) <= self.floor {
             self.touching.push([a.low, a.high, b.low, b.high]);
@@ -457,7 +453,11 @@ impl<'a> Search<'a> {
             }
             last = size;
             (s, t) = (s + step.x, t + step.y);
-            if s < a.low - a.width() || s > a.high + a.width() || t < b.low - b.width() || t > b.high + b.width() {
+            if s < a.low - a.width()
+                || s > a.high + a.width()
+                || t < b.low - b.width()
+                || t > b.high + b.width()
+            {
                 return None;
             }
         }
@@ -475,7 +475,10 @@ impl<'a> Search<'a> {
         for pair in pairs {
             let near = |g: &&mut [f64; 4]| {
                 let slack = 2.0 * self.floor;
-                pair[0] <= g[1] + slack && g[0] <= pair[1] + slack && pair[2] <= g[3] + slack && g[2] <= pair[3] + slack
+                pair[0] <= g[1] + slack
+                    && g[0] <= pair[1] + slack
+                    && pair[2] <= g[3] + slack
+                    && g[2] <= pair[3] + slack
             };
             match groups.iter_mut().find(near) {
                 Some(g) => *g = [g[0].min(pair[0]), g[1].max(pair[1]), g[2].min(pair[2]), g[3].max(pair[3])],
@@ -529,7 +532,8 @@ impl<'a> Search<'a> {
             let (s, t) = self.parallel_point(group);
             let off = (self.scene.point_a(s) - self.scene.point_b(t)).length();
             let slack = group[1] - group[0] + 4.0 * self.floor;
-            let known = found.iter().any(|m| (m.first[0] - s).abs() < slack && (m.second[0] - t).abs() < slack);
+            let known =
+                found.iter().any(|m| (m.first[0] - s).abs() < slack && (m.second[0] - t).abs() < slack);
             if off <= ROUNDING && !known {
                 found.push(self.scene.meeting(s, t, self.touch(s, t, slack)));
             }
@@ -611,7 +615,8 @@ mod tests {
         let (a, b) = (curve.subcurve(0.0, 0.7).unwrap(), curve.subcurve(0.3, 1.0).unwrap());
         let check = |found: &[Meeting], first: [f64; 2], second: [f64; 2]| {
             assert!(found.len() == 1 && found[0].contact == Contact::Overlap, "{found:?}");
-            for (got, want) in found[0].first.iter().chain(&found[0].second).zip(first.iter().chain(&second)) {
+            for (got, want) in found[0].first.iter().chain(&found[0].second).zip(first.iter().chain(&second))
+            {
                 assert!((got - want).abs() < 1e-12, "{found:?}");
             }
         };
@@ -641,8 +646,8 @@ mod tests {
         let looped = cubic([(0.0, 0.0), (150.0, 100.0), (-50.0, 100.0), (100.0, 0.0)]);
         let found = self_intersections(&looped).unwrap();
         assert_eq!(found.len(), 1, "{found:?}");
-        assert!((found[0].first[0] - 0.172673164646011428).abs() < 1e-14);
-        assert!((found[0].second[0] - (1.0 - 0.172673164646011428)).abs() < 1e-14);
+        assert!((found[0].first[0] - 0.17267316464601143).abs() < 1e-14);
+        assert!((found[0].second[0] - (1.0 - 0.17267316464601143)).abs() < 1e-14);
         assert!(self_intersections(&arches(0.0)[0]).unwrap().is_empty());
     }
 

@@ -132,7 +132,9 @@ pub enum CurveError {
 impl fmt::Display for CurveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            CurveError::TooFewPoints { actual, least } => write!(f, "{actual} points where {least} are needed"),
+            CurveError::TooFewPoints { actual, least } => {
+                write!(f, "{actual} points where {least} are needed")
+            }
             CurveError::NotFinite { index } => write!(f, "point {index} is not finite"),
             CurveError::Tolerance { value } => write!(f, "a tolerance of {value} is not a positive number"),
             CurveError::ToleranceTooFine { value, finest } => {
@@ -142,10 +144,14 @@ impl fmt::Display for CurveError {
             CurveError::Knot { index } => write!(f, "knot {index} is not finite or out of order"),
             CurveError::Count { actual, expected } => write!(f, "{actual} values where {expected} belong"),
             CurveError::Weight { index } => write!(f, "weight {index} is not a positive number"),
-            CurveError::Gap { piece } => write!(f, "piece {piece} does not start where the one before it ends"),
+            CurveError::Gap { piece } => {
+                write!(f, "piece {piece} does not start where the one before it ends")
+            }
             CurveError::Open => write!(f, "the path is not closed"),
             CurveError::Degree { actual, most } => write!(f, "degree {actual} where {most} is the highest"),
-            CurveError::TooClose => write!(f, "the curves are too close to one another to tell where they meet"),
+            CurveError::TooClose => {
+                write!(f, "the curves are too close to one another to tell where they meet")
+            }
             CurveError::Singular => write!(f, "the equations of the interpolation are singular"),
         }
     }

@@ -40,10 +40,7 @@ pub fn nearest<C: Bernstein>(curve: &C, point: C::Vector) -> Result<Nearest<C::V
 ///
 /// # Errors
 /// As [`nearest`].
-pub fn nearest_all<C: Bernstein>(
-    curve: &C,
-    point: C::Vector,
-) -> Result<Vec<Nearest<C::Vector>>, CurveError> {
+pub fn nearest_all<C: Bernstein>(curve: &C, point: C::Vector) -> Result<Vec<Nearest<C::Vector>>, CurveError> {
     if !point.finite() {
         return Err(CurveError::NotFinite { index: 0 });
     }
@@ -76,10 +73,8 @@ fn minima<P: Blend>(offsets: &[P]) -> Vec<(f64, Bounded<f64>)> {
     let inner = turns.iter().filter(|turn| turn.t > 0.0 && turn.t < 1.0);
     let stops: Vec<f64> = [0.0].into_iter().chain(inner.map(|turn| turn.t)).chain([1.0]).collect();
     // Between turns the distance rises or falls throughout.
-    let rises: Vec<bool> = stops
-        .windows(2)
-        .map(|pair| de_casteljau(&slope, 0.5 * (pair[0] + pair[1])) > 0.0)
-        .collect();
+    let rises: Vec<bool> =
+        stops.windows(2).map(|pair| de_casteljau(&slope, 0.5 * (pair[0] + pair[1])) > 0.0).collect();
     let is_minimum = |i: usize| {
         let falls_before = i == 0 || !rises[i - 1];
         let rises_after = i == rises.len() || rises[i];

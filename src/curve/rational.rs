@@ -1,7 +1,7 @@
 use super::differential::{Curve, Jet, jet};
 use super::subdivide::{elevate, restrict};
 use super::{CurveError, check_finite, check_unit, evaluate};
-use crate::math::{Blend as _, Vec3, Vec4};
+use crate::math::{Vec3, Vec4};
 
 /// A rational Bézier curve in space: control points with positive weights, any degree. Conics are exact.
 ///
@@ -88,7 +88,7 @@ impl Curve for Rational {
         let h = jet(&self.points, t);
         let space = |v: Vec4| Vec3::new(v.x, v.y, v.z);
         let w = [h.point.w, h.first.w, h.second.w, h.third.w];
-        let over = |v: Vec3| v.map(|x| x / w[0]);
+        let over = |v: Vec3| v / w[0];
         let point = self.eval(t);
         let first = over(space(h.first) - point * w[1]);
         let second = over(space(h.second) - first * (2.0 * w[1]) - point * w[2]);
@@ -117,11 +117,14 @@ mod tests {
             assert!((jet.curvature() - 1.0).abs() < 1e-14 && jet.first.dot(jet.point).abs() < 1e-15);
             // Third derivative against a difference of second ones.
             let step = 1e-5;
-            let slope = (quarter_circle().jet(t + step).second - quarter_circle().jet(t - step).second) / (2.0 * step);
+            let slope = (quarter_circle().jet(t + step).second - quarter_circle().jet(t - step).second)
+                / (2.0 * step);
             assert!((slope - jet.third).length() < 1e-7);
         }
         let (left, right) = quarter_circle().split(0.3).unwrap();
-        assert!((left.eval(0.5).length() - 1.0).abs() < 1e-15 && (right.eval(1.0) - Vec3::Y).length() < 1e-15);
+        assert!(
+            (left.eval(0.5).length() - 1.0).abs() < 1e-15 && (right.eval(1.0) - Vec3::Y).length() < 1e-15
+        );
     }
 
     #[test]

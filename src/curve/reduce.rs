@@ -124,7 +124,7 @@ fn multiplied<P: Blend>(quotient: &[P], ends: usize, degree: usize) -> Vec<P> {
 fn drop_highest<P: Blend>(q: &mut Vec<P>, a: usize) {
     let d = q.len() - 1;
     let (over, under) = (binomials(d + a), binomials(d));
-    let alternating = |i: usize| if (d - i) % 2 == 0 { 1.0 } else { -1.0 };
+    let alternating = |i: usize| if (d - i).is_multiple_of(2) { 1.0 } else { -1.0 };
     let jacobi: Vec<f64> = (0..=d).map(|i| alternating(i) * over[i] * over[d - i] / under[i]).collect();
     let leading = |values: &mut dyn Iterator<Item = P>| {
         values.enumerate().fold(P::ZERO, |sum, (i, value)| sum + value * (alternating(i) * under[i]))

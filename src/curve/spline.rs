@@ -257,10 +257,9 @@ impl<P: Blend> Spline<P> {
     /// The smallest box around the curve, rounded outward as [`bounding_box`].
     pub fn bounding_box(&self) -> Bounds<P> {
         let first = Bounds { min: self.points[0], max: self.points[0] };
-        self.pieces().map(|piece| bounding_box(&piece)).fold(first, |a, b| Bounds {
-            min: a.min.zip(b.min, f64::min),
-            max: a.max.zip(b.max, f64::max),
-        })
+        self.pieces()
+            .map(|piece| bounding_box(&piece))
+            .fold(first, |a, b| Bounds { min: a.min.zip(b.min, f64::min), max: a.max.zip(b.max, f64::max) })
     }
 }
 

@@ -218,7 +218,9 @@ mod tests {
     #[test]
     fn subcurves_run_where_they_should() {
         let curve = cubic();
-        for (from, to) in [(0.0, 1.0), (0.2, 0.7), (0.7, 0.2), (0.9, 0.95), (0.01, 0.02), (-0.5, 1.5), (1.0, 0.0)] {
+        for (from, to) in
+            [(0.0, 1.0), (0.2, 0.7), (0.7, 0.2), (0.9, 0.95), (0.01, 0.02), (-0.5, 1.5), (1.0, 0.0)]
+        {
             let part = curve.subcurve(from, to).unwrap();
             for k in 0..=10 {
                 let s = f64::from(k) / 10.0;
@@ -227,7 +229,10 @@ mod tests {
             }
             assert_eq!((part.start(), part.end()), (curve.eval(from), curve.eval(to)));
         }
-        assert_eq!(curve.subcurve(0.0, f64::NAN).unwrap_err().to_string(), "the parameter NaN is not in the domain");
+        assert_eq!(
+            curve.subcurve(0.0, f64::NAN).unwrap_err().to_string(),
+            "the parameter NaN is not in the domain"
+        );
     }
 
     #[test]

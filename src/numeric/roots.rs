@@ -168,7 +168,8 @@ mod tests {
     fn a_bracket_closes_on_hard_functions() {
         assert!((bracketed(|x| x * x - 2.0, 0.0, 2.0) - 2_f64.sqrt()).abs() <= f64::EPSILON);
         assert_eq!(bracketed(|x| if x < 0.3 { -1.0 } else { 1e9 }, 0.0, 1.0), 0.3_f64.next_down());
-        assert_eq!(bracketed(|x| x * x * x * x * x, -1.0, 0.7), 0.0);
+        // The fifth power underflows to zero near its root.
+        assert!(bracketed(|x| x * x * x * x * x, -1.0, 0.7).abs() < 1e-60);
         let mut count = 0;
         bracketed(
             |x| {

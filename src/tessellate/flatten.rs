@@ -325,7 +325,7 @@ mod tests {
         for tolerance in [1.0, 1e-3, 1e-6, 1e-9] {
             let flat = flatten(&line, tolerance).unwrap();
             let length: f64 = flat.points.windows(2).map(|pair| (pair[1] - pair[0]).length()).sum();
-            assert!((length - 189.44271909999158786).abs() < 8.0 * tolerance && flat.points.len() <= 12);
+            assert!((length - 189.4427190999916).abs() < 8.0 * tolerance && flat.points.len() <= 12);
         }
         let cusp = cubic([(0.0, 0.0), (100.0, 100.0), (0.0, 100.0), (100.0, 0.0)]);
         let flat = flatten(&cusp, 0.01).unwrap();
@@ -343,7 +343,8 @@ mod tests {
             assert!(matches!(flatten(&point, value), Err(CurveError::Tolerance { .. })));
         }
         assert!(matches!(flatten(&straight, 1e-16), Err(CurveError::ToleranceTooFine { .. })));
-        assert_eq!(flatten(&cubic([(0.0, 0.0), (1e308, 0.0), (1e308, 1e308), (0.0, 0.0)]), 1e300).is_ok(), true);
+        let huge = cubic([(0.0, 0.0), (1e308, 0.0), (1e308, 1e308), (0.0, 0.0)]);
+        assert!(flatten(&huge, 1e300).unwrap().points.len() > 100);
     }
 
     #[test]
