@@ -1,7 +1,8 @@
 //! Laws of Bézier curves, over random ones.
 
 use ogee::curve::{
-    AnyBezier, Bernstein, Contact, Cubic, bounding_box, convex_hull, intersect, intersect_line,
+    AnyBezier, Bernstein, Contact, Cubic, CurveError, bounding_box, convex_hull, intersect, intersect_line,
+    self_intersections,
 };
 use ogee::math::{Affine2, Mat2, Vec2};
 use ogee::numeric::orient2d;
@@ -74,6 +75,32 @@ proptest! {
         for meeting in found {
             let on_line = from + meeting.second[0] * (to - from);
             prop_assert!((on_line - meeting.point).length() < 1e-12 * (1.0 + meeting.second[0].abs()));
+        }
+    }
+
+    #[test]
+    fn curves_on_a_coarse_grid_are_no_trap(
+        a in prop::array::uniform4((0..4_i32, 0..4_i32)), b in prop::array::uniform4((0..4_i32, 0..4_i32)),
+    ) {
+        // Doubled points, cusps, shared ends, straight and overlapping pieces are common here.
+        let on_grid = |points: [(i32, i32); 4]| {
+            Cubic::new(points.map(|(x, y)| Vec2::new(f64::from(x), f64::from(y)))).unwrap()
+        };
+        let (a, b) = (on_grid(a), on_grid(b));
+        match intersect(&a, &b, None) {
+            Err(error) => prop_assert_eq!(error, CurveError::TooClose),
+            Ok(found) => for meeting in found {
+                for k in 0..2 {
+                    let off = (a.eval(meeting.first[k]) - b.eval(meeting.second[k])).length();
+                    prop_assert!(off < 1e-12, "{meeting:?}");
+                }
+            }
+        }
+        if let Ok(found) = self_intersections(&a) {
+            for meeting in found {
+                let off = (a.eval(meeting.first[0]) - a.eval(meeting.second[0])).length();
+                prop_assert!(off < 1e-12, "{meeting:?}");
+            }
         }
     }
 

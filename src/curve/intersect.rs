@@ -4,7 +4,7 @@ use super::bernstein::{Roots, roots};
 use super::differential::jet;
 use super::nearest::nearest;
 use super::subdivide::{reciprocal_powers, restrict};
-use super::{AnyBezier, Bernstein, CurveError, check_degree, check_finite};
+use super::{AnyBezier, Bernstein, Cubic, CubicShape, CurveError, check_degree, check_finite};
 use crate::math::Vec2;
 
 /// How two curves meet.
@@ -44,7 +44,11 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Parameter width below which nearly parallel parts are examined as a touch: there a parabola deviates by rounding.
 const TOUCH_WIDTH: f64 = 1.0 / (1_u64 << 26) as f64;
 /// Pairs of parts that are examined before curves are called too close.
-const MAX_PAIRS: usize = 200_000;
+const MAX_PAIRS: usize = 50_000;
+/// Pairs of parts that stay nearly parallel to the end before curves are called too close; a touch has a few dozen.
+const MAX_TOUCHING: usize = 2_000;
+/// Parts of a curve that are intersected with one another.
+const MAX_PARTS: usize = 256;
 /// Parameters nearer than this belong to one crossing: it was found from two neighbouring parts.
 const SAME: f64 = 1.0 / (1_u64 << 34) as f64;
 
@@ -115,6 +119,9 @@ where
     check_degree(first.degree().max(second.degree()))?;
     tolerance.map_or(Ok(()), super::check_tolerance)?;
     let scene = Scene::new(first.points(), second.points())?;
+    if tolerance.is_none() && scene.boxes_are_apart() {
+        return Ok(Vec::new());
+    }
     let mut meetings = scene.overlaps()?;
     let overlaps = meetings.clone();
     let mut search = Search::new(&scene, ROUNDING, TOUCH_WIDTH);
@@ -137,12 +144,16 @@ where
 
 /// Where a curve meets itself: pairs of different parameters, the smaller one first.
 ///
-/// The curve is cut into parts whose tangents span less than a half turn, which cannot meet themselves, and the parts
+/// Cubics and lower degrees, unless they run on a line, have at most one such point, found in closed form. For others
+/// the curve is cut into parts whose tangents span less than a half turn, which cannot meet themselves, and the parts
 /// are intersected with one another; the joints of neighbours do not count.
 ///
 /// # Errors
 /// As [`intersect`].
 pub fn self_intersections<C: Bernstein<Vector = Vec2>>(curve: &C) -> Result<Vec<Meeting>, CurveError> {
+    if let Some(meetings) = of_cubic(curve) {
+        return Ok(meetings);
+    }
     let mut cuts = vec![0.0];
     simple_parts(curve, 0.0, 1.0, &mut cuts)?;
     let parts: Vec<C> =
@@ -168,6 +179,26 @@ pub fn self_intersections<C: Bernstein<Vector = Vec2>>(curve: &C) -> Result<Vec<
     Ok(found)
 }
 
+/// The closed form of a curve up to degree 3; `None` for higher degrees and for curves on a line.
+fn of_cubic<C: Bernstein<Vector = Vec2>>(curve: &C) -> Option<Vec<Meeting>> {
+    let raised = AnyBezier::assume(curve.points().to_vec()).elevated(3_usize.checked_sub(curve.degree())?);
+    let &[a, b, c, d] = raised.points() else { return None };
+    let cubic = Cubic::assume([a, b, c, d]);
+    if curve.points().iter().all(|&point| point == a) {
+        return Some(Vec::new());
+    }
+    if cubic.shape() == CubicShape::Straight {
+        return None;
+    }
+    let meeting = |[s, t]: [f64; 2]| Meeting {
+        first: [s, s],
+        second: [t, t],
+        point: curve.eval(s),
+        contact: Contact::Crossing,
+    };
+    Some(cubic.self_intersection().map(meeting).into_iter().collect())
+}
+
 /// Adds the ends of parts of the curve whose derivatives stay within an open half-plane, or that are very short.
 fn simple_parts<C>(curve: &C, low: f64, high: f64, cuts: &mut Vec<f64>) -> Result<(), CurveError>
 where
@@ -175,7 +206,11 @@ where
 {
     let part = curve.subcurve(low, high)?;
     let steps: Vec<Vec2> = part.points().windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if high - low < 1e-6 || cone(&steps).is_some() {
+    let stands_still = steps.iter().all(|&step| step == Vec2::ZERO);
+    if cuts.len() > MAX_PARTS {
+        return Err(CurveError::TooClose);
+    }
+    if high - low < 1e-6 || stands_still || cone(&steps).is_some() {
         cuts.push(high);
         return Ok(());
     }
@@ -201,6 +236,11 @@ fn cone(steps: &[Vec2]) -> Option<[Vec2; 2]> {
         }
     }
     (right.dot(left) > 0.0).then_some([right, left])
+}
+
+/// The smallest and largest coordinates.
+fn extent(points: &[Vec2]) -> [Vec2; 2] {
+    points.iter().fold([points[0]; 2], |[low, high], &p| [low.min(p), high.max(p)])
 }
 
 /// Whether no direction of one cone is parallel to one of the other.
@@ -247,8 +287,7 @@ impl Part {
     }
 
     fn extent(&self) -> [Vec2; 2] {
-        let first = self.points[0];
-        self.points.iter().fold([first, first], |[low, high], &p| [low.min(p), high.max(p)])
+        extent(&self.points)
     }
 
     fn cone(&self) -> Option<[Vec2; 2]> {
@@ -283,6 +322,11 @@ impl Scene {
             *p = *p * first * second;
         }
         Ok(Scene { a, b, scale: [first, 0.25 * second] })
+    }
+
+    fn boxes_are_apart(&self) -> bool {
+        let ([a_low, a_high], [b_low, b_high]) = (extent(&self.a), extent(&self.b));
+        a_low.cmpgt(b_high + ROUNDING).any() || b_low.cmpgt(a_high + ROUNDING).any()
     }
 
     fn point_a(&self, t: f64) -> Vec2 {
@@ -399,7 +443,7 @@ impl<'a> Search<'a> {
 
     fn examine(&mut self, a: &Part, b: &Part) -> Result<(), CurveError> {
         self.pairs += 1;
-        if self.pairs > MAX_PAIRS {
+        if self.pairs > MAX_PAIRS || self.touching.len() > MAX_TOUCHING {
             return Err(CurveError::TooClose);
         }
         let ([a_low, a_high], [b_low, b_high]) = (a.extent(), b.extent());
@@ -417,14 +461,17 @@ impl<'a> Search<'a> {
             self.crossings.push(pair);
             return Ok(());
         }
-        if a.width().max(b.width()) <= self.floor {
+        // A part as small as rounding is not cut either: its points cannot be told apart.
+        let (size_a, size_b) = ((a_high - a_low).max_element(), (b_high - b_low).max_element());
+        let done_a = a.width() <= self.floor || size_a <= f64::EPSILON;
+        let done_b = b.width() <= self.floor || size_b <= f64::EPSILON;
+        if done_a && done_b {
             self.touching.push([a.low, a.high, b.low, b.high]);
             return Ok(());
         }
-        // The wider one in the plane is cut; both when they are alike.
-        let (size_a, size_b) = ((a_high - a_low).max_element(), (b_high - b_low).max_element());
-        let cut_a = (size_a >= 0.5 * size_b || b.width() <= self.floor) && a.width() > self.floor;
-        let cut_b = (size_b >= 0.5 * size_a || a.width() <= self.floor) && b.width() > self.floor;
+        // The larger one is cut; both when they are alike.
+        let cut_a = !done_a && (size_a >= 0.5 * size_b || done_b);
+        let cut_b = !done_b && (size_b >= 0.5 * size_a || done_a);
         let halves_a = if cut_a { a.halves().to_vec() } else { vec![a.clone()] };
         let halves_b = if cut_b { b.halves().to_vec() } else { vec![b.clone()] };
         for a in &halves_a {
