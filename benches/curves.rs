@@ -43,7 +43,7 @@ fn measuring(c: &mut Criterion) {
             b.iter(|| nearest(black_box(&curve), Vec2::new(40.0, 10.0)));
         });
         c.bench_function(&format!("flatten to 0.01, {name}"), |b| {
-            b.iter(|| flatten(black_box(&curve), 0.01))
+            b.iter(|| flatten(black_box(&curve), 0.01));
         });
     }
 }
