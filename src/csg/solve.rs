@@ -124,7 +124,7 @@ impl<'a, 'b> Solver<'a, 'b> {
         match &plan.kind {
             Kind::Leaf(spot) => {
                 let part = self.part(*spot)?;
-                if part.leaf.clean { Ok(part) } else { self.evaluate(&Tree::Leaf(0), vec![part]) }
+                if part.leaf.clean { Ok(part) } else { self.evaluate(&Tree::Leaf(0), &[part]) }
             }
             Kind::Frame { map, inner } => moved(self.solve(inner)?, map),
             Kind::Node { op: Op::Union, parts, .. } => {
@@ -173,7 +173,7 @@ impl<'a, 'b> Solver<'a, 'b> {
         let mut operands = Vec::new();
         let trees: Result<Vec<Tree>, BuildError> =
             plans.iter().map(|plan| self.tree(plan, &mut operands)).collect();
-        self.evaluate(&Tree::Node(op, trees?), operands)
+        self.evaluate(&Tree::Node(op, trees?), &operands)
     }
 
     /// The plan as an expression over operands, which are appended.
@@ -203,8 +203,8 @@ impl<'a, 'b> Solver<'a, 'b> {
         self.check_limit(self.spent)
     }
 
-    fn evaluate(&mut self, tree: &Tree, parts: Vec<Part>) -> Result<Part, BuildError> {
-        let materials = materials(&parts);
+    fn evaluate(&mut self, tree: &Tree, parts: &[Part]) -> Result<Part, BuildError> {
+        let materials = materials(parts);
         let operands: Vec<Operand<'_>> =
             parts.iter().zip(&materials).map(|(part, &m)| part.operand().with_material(m)).collect();
         let combined = boolean::evaluate(tree, &operands)?;
