@@ -15,7 +15,7 @@
 //!
 //! let mut obj = Vec::new();
 //! ogee::io::obj::write(notched.mesh(), &mut obj)?;
-//! # Ok::<(), std::io::Error>(())
+//! # Ok::<(), ogee::io::WriteError>(())
 //! ```
 //!
 //! # Conventions

@@ -2,12 +2,14 @@
 //! ([`Topology`]), and what can be asked of them.
 
 mod defects;
+mod measure;
 mod primitive;
 mod solid;
 mod topology;
 
 pub use defects::Defects;
 pub(crate) use defects::fans;
+pub use measure::{Measures, area, components, volume};
 pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;
 pub use topology::Topology;

@@ -1,5 +1,6 @@
 //! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.
 
+pub mod compensated;
 mod disjoint_sets;
 mod hash;
 mod predicates;
