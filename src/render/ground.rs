@@ -12,7 +12,7 @@ const CELLS: usize = 256;
 const MAP_WIDTH: f64 = 2.0;
 
 /// Radii of the blurs that make up the shadow, relative to the map, and the share of each.
-const BLURS: [(f64, f64); 3] = [(0.010, 0.26), (0.035, 0.20), (0.085, 0.18)];
+const BLURS: [(f64, f64); 3] = [(0.008, 0.34), (0.030, 0.24), (0.080, 0.20)];
 
 /// The ground under a scene: the plane through its lowest point.
 pub(super) struct Ground {

@@ -32,7 +32,7 @@ use crate::math::{Aabb, Vec3};
 use crate::mesh::Mesh;
 use crate::par;
 use camera::View;
-use color::{Light, add, decode, encode, mix};
+use color::{Encoder, Light, add, decode, mix};
 use film::{Film, Pixel};
 use ground::Ground;
 use lines::Lines;
@@ -218,6 +218,7 @@ fn develop(
     ground: Option<&Ground>,
 ) -> Image {
     let background = style.background.map(decode);
+    let encoder = Encoder::new();
     let line_color = style.edges.map_or([0.0; 3], |edges| decode(edges.color));
     let rows: Vec<usize> = (0..film.height).collect();
     let pixel = |x: usize, y: usize| {
@@ -229,28 +230,28 @@ fn develop(
             }
             _ => 0.0,
         };
-        finish(pixel, light, darkness, background, line_color)
+        let (light, opacity) = finish(pixel, light, darkness, background, line_color);
+        let [r, g, b] = encoder.encode(light);
+        [r, g, b, (opacity * 255.0).round() as u8]
     };
     let pixels =
         par::map_above(2, &rows, |&y| (0..film.width).map(|x| pixel(x, y)).collect::<Vec<_>>()).concat();
     Image { width: style.width, height: style.height, pixels }
 }
 
-/// Surface over shadowed ground or nothing, lines over both.
+/// Surface over shadowed ground or nothing, lines over both: a colour and its opacity.
 fn finish(
     pixel: &Pixel,
     ambient: f32,
     darkness: f32,
     background: Option<Light>,
     line_color: Light,
-) -> [u8; 4] {
+) -> (Light, f32) {
     let surface = add(pixel.direct, pixel.ambient, ambient);
     let free = 1.0 - pixel.coverage;
     let behind = background.unwrap_or([0.0; 3]);
     let opacity = if background.is_some() { 1.0 } else { pixel.coverage + free * darkness };
     let light = mix(add(surface, behind, free * (1.0 - darkness)), line_color, pixel.line);
     let opacity = opacity + (1.0 - opacity) * pixel.line;
-    let light = if opacity > 0.0 { light.map(|c| c / opacity) } else { light };
-    let [r, g, b] = encode(light);
-    [r, g, b, (opacity * 255.0).round() as u8]
+    (if opacity > 0.0 { light.map(|c| c / opacity) } else { light }, opacity)
 }
