@@ -1,3 +1,8 @@
 //! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.
 
 pub mod compensated;
+mod hash;
+mod wide;
+
+pub use hash::MixHasher;
+pub use wide::{Wide, rounded_quotient, scale_by_power_of_two};

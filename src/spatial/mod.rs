@@ -1,1 +1,5 @@
 //! Finding by place.
+
+mod bvh;
+
+pub use bvh::Bvh;

@@ -1,0 +1,316 @@
+//! Segments of one plane cut where they meet, and the cells between them.
+
+use super::sweep::{Planar, Visitor};
+use super::{Chart, Line, PointId, Points};
+use crate::math::Aabb;
+use crate::spatial::Bvh;
+use std::cmp::Ordering;
+
+/// A segment of a chart, between different points of one of its lines.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    /// The ends, in either order.
+    pub ends: [PointId; 2],
+    /// Index of the line it lies on.
+    pub line: u32,
+    /// What changes across the segment, seen from its first end to its second; none for a mere cut.
+    pub jump: Option<Jump>,
+}
+
+/// A change of coverage from the right of a directed segment to its left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Jump {
+    /// Whose coverage.
+    pub operand: u32,
+    /// By how much it is more on the left.
+    pub amount: i32,
+    /// The face that begins there.
+    pub face: u32,
+}
+
+/// A planar subdivision: edges that meet only at common ends, and cells between them.
+#[derive(Clone, Debug, Default)]
+pub struct Overlay {
+    /// Points from left to right.
+    pub vertices: Vec<PointId>,
+    /// Edges by their left ends, from one left end from bottom to top.
+    pub edges: Vec<SubEdge>,
+    /// All jumps of all edges; each edge names its range.
+    pub jumps: Vec<Jump>,
+    /// For each cell, the sorted operands that cover it and how often; cell 0 is the one outside.
+    pub coverage: Vec<Vec<(u32, i32)>>,
+}
+
+/// A piece of one or several segments.
+#[derive(Clone, Copy, Debug)]
+pub struct SubEdge {
+    /// Its ends, the left one first.
+    pub ends: [PointId; 2],
+    /// Index of a line it lies on.
+    pub line: u32,
+    /// The cell below it.
+    pub below: u32,
+    /// The cell above it.
+    pub above: u32,
+    /// Range in [`Overlay::jumps`], each from below to above.
+    pub jumps: [u32; 2],
+}
+
+impl Overlay {
+    /// The jumps of an edge, from below to above.
+    pub fn jumps_of(&self, edge: &SubEdge) -> &[Jump] {
+        &self.jumps[edge.jumps[0] as usize..edge.jumps[1] as usize]
+    }
+}
+
+/// Cuts `segments` where they cross, touch or overlap, and at `marks` that lie on them, and finds the cells between them.
+///
+/// New points are entered into `points`. Coverage is zero outside and changes by the jumps.
+pub fn overlay(
+    chart: &Chart,
+    points: &mut Points,
+    lines: &[Line],
+    segments: &[Segment],
+    marks: &[PointId],
+) -> Overlay {
+    let pieces = cut(chart, points, lines, segments, marks);
+    let (edges, jumps) = unite(pieces);
+    let ends: Vec<([PointId; 2], u32)> = edges.iter().map(|edge| (edge.ends, edge.line)).collect();
+    let mut planar = Planar::new(chart, points, &ends);
+    let order = sweep_order(&mut planar, points, lines);
+    let edges: Vec<SubEdge> = order.iter().map(|&i| edges[i as usize]).collect();
+    find_cells(&planar, points, lines, edges, jumps)
+}
+
+/// A piece of a segment from left to right.
+struct Piece {
+    ends: [PointId; 2],
+    line: u32,
+    jump: Option<Jump>,
+}
+
+/// All segments in pieces that meet only at common ends, or coincide.
+fn cut(
+    chart: &Chart,
+    points: &mut Points,
+    lines: &[Line],
+    segments: &[Segment],
+    marks: &[PointId],
+) -> Vec<Piece> {
+    let segments: Vec<Segment> = segments.iter().map(|s| from_left_to_right(chart, points, s)).collect();
+    let boxes: Vec<Aabb> = segments.iter().map(|s| Aabb::of(s.ends.map(|p| points.rounded(p)))).collect();
+    let bvh = Bvh::new(&boxes);
+    let mut cuts: Vec<(u32, PointId)> = Vec::new();
+    bvh.self_pairs(&boxes, |i, j| {
+        let (a, b) = (&segments[i as usize], &segments[j as usize]);
+        cut_pair(chart, points, lines, [a, b], |which, at| cuts.push(([i, j][which], at)));
+    });
+    for &mark in marks {
+        let place = points.rounded(mark);
+        bvh.touching(&boxes, Aabb { min: place, max: place }, |i| {
+            let segment = &segments[i as usize];
+            if lines[segment.line as usize].side(points, mark) == 0
+                && strictly_between(chart, points, mark, segment)
+            {
+                cuts.push((i, mark));
+            }
+        });
+    }
+    cuts.sort_by(|a, b| a.0.cmp(&b.0).then_with(|| chart.compare(points, a.1, b.1)));
+    cuts.dedup();
+
+    let mut pieces = Vec::with_capacity(segments.len() + cuts.len());
+    let mut cuts = cuts.into_iter().peekable();
+    for (index, segment) in (0_u32..).zip(&segments) {
+        let mut from = segment.ends[0];
+        while let Some((_, at)) = cuts.next_if(|&(of, _)| of == index) {
+            pieces.push(Piece { ends: [from, at], line: segment.line, jump: segment.jump });
+            from = at;
+        }
+        pieces.push(Piece { ends: [from, segment.ends[1]], line: segment.line, jump: segment.jump });
+    }
+    pieces
+}
+
+fn from_left_to_right(chart: &Chart, points: &Points, segment: &Segment) -> Segment {
+    match chart.compare(points, segment.ends[0], segment.ends[1]) {
+        Ordering::Greater => Segment {
+            ends: [segment.ends[1], segment.ends[0]],
+            jump: segment.jump.map(|jump| Jump { amount: -jump.amount, ..jump }),
+            ..*segment
+        },
+        _ => *segment,
+    }
+}
+
+/// Reports the points strictly inside one of two segments where the other one meets it.
+fn cut_pair(
+    chart: &Chart,
+    points: &mut Points,
+    lines: &[Line],
+    pair: [&Segment; 2],
+    mut report: impl FnMut(usize, PointId),
+) {
+    let [a, b] = pair;
+    let (line_a, line_b) = (&lines[a.line as usize], &lines[b.line as usize]);
+    let sides_of_a = if a.line == b.line { [0, 0] } else { a.ends.map(|p| line_b.side(points, p)) };
+    if sides_of_a == [0, 0] {
+        for (which, other) in [(0, b), (1, a)] {
+            for end in other.ends {
+                if strictly_between(chart, points, end, pair[which]) {
+                    report(which, end);
+                }
+            }
+        }
+        return;
+    }
+    if sides_of_a[0] * sides_of_a[1] > 0 {
+        return;
+    }
+    let sides_of_b = b.ends.map(|p| line_a.side(points, p));
+    if sides_of_b[0] * sides_of_b[1] > 0 {
+        return;
+    }
+    // The lines cross in one point, which is on both segments: an end wherever a side is zero.
+    let end_of = |segment: &Segment, sides: [i32; 2]| {
+        sides.iter().position(|&side| side == 0).map(|which| segment.ends[which])
+    };
+    match (end_of(a, sides_of_a), end_of(b, sides_of_b)) {
+        (Some(_), Some(_)) => {}
+        (Some(end), None) => report(1, end),
+        (None, Some(end)) => report(0, end),
+        (None, None) => {
+            let meeting = points.meeting(chart.plane(), line_a.plane(), line_b.plane());
+            let at = meeting.expect("lines that cross meet in one point");
+            report(0, at);
+            report(1, at);
+        }
+    }
+}
+
+/// Whether a point of the segment's line lies inside the segment and is none of its ends.
+fn strictly_between(chart: &Chart, points: &Points, point: PointId, segment: &Segment) -> bool {
+    chart.compare(points, segment.ends[0], point) == Ordering::Less
+        && chart.compare(points, point, segment.ends[1]) == Ordering::Less
+}
+
+/// Makes pieces with the same ends one edge with the jumps of all.
+fn unite(mut pieces: Vec<Piece>) -> (Vec<SubEdge>, Vec<Jump>) {
+    pieces.sort_by(|a, b| (a.ends, a.jump, a.line).cmp(&(b.ends, b.jump, b.line)));
+    let (mut edges, mut jumps) = (Vec::with_capacity(pieces.len()), Vec::new());
+    for group in pieces.chunk_by(|a, b| a.ends == b.ends) {
+        let start = jumps.len() as u32;
+        jumps.extend(group.iter().filter_map(|piece| piece.jump));
+        let jumps = [start, jumps.len() as u32];
+        edges.push(SubEdge { ends: group[0].ends, line: group[0].line, below: 0, above: 0, jumps });
+    }
+    (edges, jumps)
+}
+
+/// Sorts the graph for the sweep and tells which edge came from where.
+fn sweep_order(planar: &mut Planar, points: &Points, lines: &[Line]) -> Vec<u32> {
+    let before = planar.edges.clone();
+    planar.sort(points, lines);
+    let mut place: Vec<(u32, u32, u32)> = (0..).zip(&before).map(|(i, e)| (e.left, e.right, i)).collect();
+    place.sort_unstable();
+    let find = |left: u32, right: u32| place[place.partition_point(|&(l, r, _)| (l, r) < (left, right))].2;
+    planar.edges.iter().map(|edge| find(edge.left, edge.right)).collect()
+}
+
+/// Cells as a union of intervals: those that merge become one.
+struct CellFinder<'a> {
+    parent: Vec<u32>,
+    edges: &'a mut [SubEdge],
+}
+
+impl CellFinder<'_> {
+    fn root(&mut self, mut cell: u32) -> u32 {
+        while self.parent[cell as usize] != cell {
+            let up = self.parent[cell as usize];
+            self.parent[cell as usize] = self.parent[up as usize];
+            cell = up;
+        }
+        cell
+    }
+}
+
+impl Visitor for CellFinder<'_> {
+    fn open(&mut self, _vertex: u32, _below: u32) -> u32 {
+        self.parent.push(self.parent.len() as u32);
+        self.parent.len() as u32 - 1
+    }
+
+    fn close(&mut self, _interval: u32, _vertex: u32) {}
+
+    fn turn_above(&mut self, _interval: u32, _vertex: u32) {}
+
+    fn turn_below(&mut self, _interval: u32, _vertex: u32) {}
+
+    fn split(&mut self, interval: u32, _vertex: u32) -> (u32, u32) {
+        (interval, interval)
+    }
+
+    fn merge(&mut self, lower: u32, upper: u32, _vertex: u32) -> u32 {
+        let (a, b) = (self.root(lower), self.root(upper));
+        self.parent[a.max(b) as usize] = a.min(b);
+        a.min(b)
+    }
+
+    fn start(&mut self, edge: u32, below: u32, above: u32) {
+        let edge = &mut self.edges[edge as usize];
+        (edge.below, edge.above) = (below, above);
+    }
+}
+
+fn find_cells(
+    planar: &Planar,
+    points: &Points,
+    lines: &[Line],
+    mut edges: Vec<SubEdge>,
+    jumps: Vec<Jump>,
+) -> Overlay {
+    let mut finder = CellFinder { parent: vec![0], edges: &mut edges };
+    planar.sweep(points, lines, 0, &mut finder);
+    let mut names = vec![u32::MAX; finder.parent.len()];
+    let mut count = 0;
+    for cell in 0..finder.parent.len() as u32 {
+        let root = finder.root(cell) as usize;
+        if names[root] == u32::MAX {
+            names[root] = count;
+            count += 1;
+        }
+        names[cell as usize] = names[root];
+    }
+    for edge in &mut edges {
+        (edge.below, edge.above) = (names[edge.below as usize], names[edge.above as usize]);
+    }
+    let coverage = cover(&edges, &jumps, count as usize);
+    Overlay { vertices: planar.vertices.clone(), edges, jumps, coverage }
+}
+
+/// Coverage of each cell, from the outside in. Edges in sweep order reach every cell from one that is known: the
+/// leftmost edge below a cell starts between known ones.
+fn cover(edges: &[SubEdge], jumps: &[Jump], count: usize) -> Vec<Vec<(u32, i32)>> {
+    let mut coverage: Vec<Option<Vec<(u32, i32)>>> = vec![None; count];
+    coverage[0] = Some(Vec::new());
+    for edge in edges {
+        if coverage[edge.above as usize].is_none() {
+            let below = coverage[edge.below as usize].as_ref().expect("the cell below started before");
+            coverage[edge.above as usize] =
+                Some(after_jumps(below, &jumps[edge.jumps[0] as usize..edge.jumps[1] as usize]));
+        }
+    }
+    coverage.into_iter().map(|cell| cell.expect("every cell lies above an edge")).collect()
+}
+
+fn after_jumps(below: &[(u32, i32)], jumps: &[Jump]) -> Vec<(u32, i32)> {
+    let mut cover = below.to_vec();
+    for jump in jumps {
+        match cover.binary_search_by_key(&jump.operand, |&(operand, _)| operand) {
+            Ok(at) => cover[at].1 += jump.amount,
+            Err(at) => cover.insert(at, (jump.operand, jump.amount)),
+        }
+    }
+    cover.retain(|&(_, amount)| amount != 0);
+    cover
+}

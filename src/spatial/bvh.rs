@@ -1,0 +1,139 @@
+use crate::math::{Aabb, Vec3};
+
+/// A binary tree of boxes over items that have a box each.
+///
+/// Items are ordered along a space-filling curve (Morton) and the tree is implicit in that order, so it is the same on
+/// every run. All comparisons are closed: boxes that touch are found.
+#[derive(Clone, Debug, Default)]
+pub struct Bvh {
+    /// Item of each leaf slot.
+    order: Vec<u32>,
+    /// Boxes level by level, leaves' groups first.
+    levels: Vec<Vec<Aabb>>,
+}
+
+/// Items a leaf group.
+const GROUP: usize = 4;
+
+/// Bits an axis of the space-filling curve.
+const CURVE_BITS: u32 = 20;
+
+impl Bvh {
+    /// The tree over `boxes`.
+    pub fn new(boxes: &[Aabb]) -> Bvh {
+        if boxes.is_empty() {
+            return Bvh::default();
+        }
+        let order = along_curve(boxes);
+        let around = |items: &[u32]| items.iter().fold(Aabb::EMPTY, |b, &i| b.union(boxes[i as usize]));
+        let mut levels = vec![order.chunks(GROUP).map(around).collect::<Vec<_>>()];
+        while levels[levels.len() - 1].len() > 1 {
+            let below = &levels[levels.len() - 1];
+            let above =
+                below.chunks(2).map(|pair| pair.iter().fold(Aabb::EMPTY, |b, &c| b.union(c))).collect();
+            levels.push(above);
+        }
+        Bvh { order, levels }
+    }
+
+    /// Calls `found` for every item whose box touches `target`.
+    pub fn touching(&self, boxes: &[Aabb], target: Aabb, mut found: impl FnMut(u32)) {
+        let mut stack = self.root();
+        while let Some((level, node)) = stack.pop() {
+            if !self.levels[level][node].touches(target) {
+                continue;
+            }
+            if level > 0 {
+                stack.extend(self.children(level, node));
+            } else {
+                for &item in self.group(node) {
+                    if boxes[item as usize].touches(target) {
+                        found(item);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Calls `found` for every pair of items, one of each tree, whose boxes touch.
+    pub fn pairs(&self, boxes: &[Aabb], other: &Bvh, other_boxes: &[Aabb], mut found: impl FnMut(u32, u32)) {
+        let (Some(a), Some(b)) = (self.root().pop(), other.root().pop()) else { return };
+        let mut stack = vec![(a, b)];
+        while let Some((a, b)) = stack.pop() {
+            if !self.levels[a.0][a.1].touches(other.levels[b.0][b.1]) {
+                continue;
+            }
+            if a.0 == 0 && b.0 == 0 {
+                for &i in self.group(a.1) {
+                    for &j in other.group(b.1) {
+                        if boxes[i as usize].touches(other_boxes[j as usize]) {
+                            found(i, j);
+                        }
+                    }
+                }
+            } else if a.0 >= b.0 {
+                stack.extend(self.children(a.0, a.1).map(|child| (child, b)));
+            } else {
+                stack.extend(other.children(b.0, b.1).map(|child| (a, child)));
+            }
+        }
+    }
+
+    /// Calls `found` once for every pair of different items whose boxes touch, the smaller index first.
+    pub fn self_pairs(&self, boxes: &[Aabb], mut found: impl FnMut(u32, u32)) {
+        self.pairs(boxes, self, boxes, |i, j| {
+            if i < j {
+                found(i, j);
+            }
+        });
+    }
+
+    fn root(&self) -> Vec<(usize, usize)> {
+        if self.levels.is_empty() { Vec::new() } else { vec![(self.levels.len() - 1, 0)] }
+    }
+
+    fn children(&self, level: usize, node: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let count = self.levels[level - 1].len();
+        [2 * node, 2 * node + 1]
+            .into_iter()
+            .filter(move |&child| child < count)
+            .map(move |child| (level - 1, child))
+    }
+
+    fn group(&self, node: usize) -> &[u32] {
+        &self.order[GROUP * node..self.order.len().min(GROUP * node + GROUP)]
+    }
+}
+
+/// Items in the order of a Morton curve through the centres of their boxes.
+fn along_curve(boxes: &[Aabb]) -> Vec<u32> {
+    let centers = Aabb::of(boxes.iter().map(|b| b.center()));
+    let size = centers.size();
+    let cells = f64::from(1_u32 << CURVE_BITS) - 1.0;
+    let scale = Vec3::from_array(size.to_array().map(|s| if s > 0.0 { cells / s } else { 0.0 }));
+    let mut keys: Vec<(u64, u32)> = (0..)
+        .zip(boxes)
+        .map(|(i, b)| {
+            let cell = ((b.center() - centers.min) * scale).to_array();
+            let [x, y, z] = cell.map(|c| spread(c as u64));
+            (x | y << 1 | z << 2, i)
+        })
+        .collect();
+    keys.sort_unstable();
+    keys.into_iter().map(|(_, i)| i).collect()
+}
+
+/// The bits of a number below 2^21 with two zeros between neighbours.
+fn spread(value: u64) -> u64 {
+    let mut v = value & 0x1f_ffff;
+    for (shift, mask) in [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        v = (v | v << shift) & mask;
+    }
+    v
+}
