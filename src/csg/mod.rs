@@ -8,6 +8,8 @@ use crate::math::{Affine3, Vec2, Vec3};
 use crate::mesh::Mesh;
 use std::sync::Arc;
 
+pub use crate::tessellate::{LinearSweep, RotateSweep};
+
 /// How a shape is made.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Csg {
@@ -111,32 +113,6 @@ pub enum Body {
     },
     /// Triangles from a polyhedron or a file, closed as a chain.
     Mesh(Arc<Mesh>),
-}
-
-/// The numbers of a straight sweep.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearSweep {
-    /// From the base to the top. Only its z component is turned into height; x and y shear the sweep.
-    pub vector: Vec3,
-    /// Whether the sweep is centred about z = 0.
-    pub center: bool,
-    /// Turn of the top against the base, in radians, clockwise seen from above when positive.
-    pub twist: f64,
-    /// Number of layers, at least 1.
-    pub slices: u32,
-    /// Size of the top against the base, on each axis; zero gives a point or a ridge.
-    pub scale: Vec2,
-}
-
-/// The numbers of a turn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RotateSweep {
-    /// Angle swept, in radians; a full turn closes on itself.
-    pub angle: f64,
-    /// Angle at which the sweep starts, in radians from the x axis.
-    pub start: f64,
-    /// Number of steps of the sweep, at least 1 (at least 3 for a full turn).
-    pub fragments: u32,
 }
 
 /// Whether a recipe describes a region of the plane or a solid.

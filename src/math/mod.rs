@@ -4,8 +4,10 @@
 //! of the `libm` crate, so that the same input gives the same bits on every platform.
 
 mod aabb;
+mod circle;
 
 pub use aabb::Aabb;
+pub use circle::{degrees, sin_cos_degrees, unit_circle};
 pub use glam::{
     DAffine2 as Affine2, DAffine3 as Affine3, DMat2 as Mat2, DMat3 as Mat3, DMat4 as Mat4, DQuat as Quat,
     DVec2 as Vec2, DVec3 as Vec3, DVec4 as Vec4,

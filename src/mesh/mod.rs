@@ -9,7 +9,7 @@ mod topology;
 
 pub use defects::Defects;
 pub use measure::{Measures, area, components, volume};
-pub use primitive::cuboid;
+pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;
 pub use topology::Topology;
 

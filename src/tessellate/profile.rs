@@ -1,0 +1,65 @@
+use super::SweepError;
+use crate::math::{Vec2, Vec3};
+use crate::mesh::{Mesh, Topology};
+use crate::polygon::{Region, triangulate};
+
+/// A region made ready to be swept: triangles, and the edges they leave open, the inside on their left. Every vertex
+/// has one open edge that starts at it and one that ends there.
+pub(super) struct Profile {
+    pub(super) points: Vec<Vec2>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) border: Vec<[u32; 2]>,
+}
+
+impl Profile {
+    pub(super) fn new(region: &Region) -> Result<Profile, SweepError> {
+        let (points, triangles) = triangulate::region(region)?;
+        let topology = Topology::new(&triangles);
+        let side = |h: u32| {
+            let triangle = triangles[h as usize / 3];
+            [triangle[h as usize % 3], triangle[Topology::next(h) as usize % 3]]
+        };
+        let open = (0..topology.len() as u32).filter(|&h| topology.twin(h) == Topology::NONE);
+        let border = open.map(side).collect();
+        Ok(Profile { points, triangles, border })
+    }
+
+    /// For each vertex, the number of the border loop it is on, and how many loops there are.
+    pub(super) fn loops(&self) -> (Vec<u32>, u32) {
+        const NONE: u32 = u32::MAX;
+        let mut next = vec![NONE; self.points.len()];
+        for &[from, to] in &self.border {
+            next[from as usize] = to;
+        }
+        let mut loop_of = vec![NONE; self.points.len()];
+        let mut count = 0;
+        for start in 0..loop_of.len() {
+            let mut vertex = start;
+            while loop_of[vertex] == NONE {
+                loop_of[vertex] = count;
+                vertex = next[vertex] as usize;
+            }
+            count += u32::from(vertex == start && loop_of[start] == count);
+        }
+        (loop_of, count)
+    }
+}
+
+/// Upper bound of the triangles that sweeping `region` over `layers` makes, ends included.
+pub(super) fn most_triangles(region: &Region, layers: u32) -> u64 {
+    let vertices: usize = region.contours().iter().map(Vec::len).sum();
+    let end = vertices + 2 * region.contours().len();
+    2 * end as u64 + 2 * vertices as u64 * u64::from(layers)
+}
+
+/// Appends the two triangles of a quad given counter-clockwise, split along its shorter diagonal.
+pub(super) fn push_quad(mesh: &mut Mesh, [a, b, c, d]: [u32; 4]) {
+    let position = |v: u32| mesh.positions[v as usize];
+    let split_ac = position(a).distance_squared(position(c)) <= position(b).distance_squared(position(d));
+    mesh.triangles.extend(if split_ac { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
+}
+
+/// Refuses positions that grew out of the range of numbers.
+pub(super) fn check_finite(positions: &[Vec3]) -> Result<(), SweepError> {
+    if positions.iter().all(|p| p.is_finite()) { Ok(()) } else { Err(SweepError::NonFinite) }
+}
