@@ -20,3 +20,9 @@ pub use libm::{
 pub fn sin_cos(angle: f64) -> (f64, f64) {
     libm::sincos(angle)
 }
+
+/// The largest power of two that is not above `|x|`; zero for zero and subnormal numbers. Dividing by it is exact but
+/// for results that are subnormal.
+pub fn power_of_two_below(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
+}

@@ -7,7 +7,7 @@
 use super::defects::Fans;
 use super::topology::sorted_half_edges;
 use super::{Mesh, Solid};
-use crate::math::{Aabb, Mat3, Vec3};
+use crate::math::{Aabb, Mat3, Vec3, power_of_two_below};
 use crate::numeric::compensated::DoubleDouble;
 use crate::par;
 
@@ -260,11 +260,6 @@ impl Frame {
         let inertia = Mat3::from_cols_array(&[dx, xy, zx, xy, dy, yz, zx, yz, dz]);
         Some((Vec3::from(placed) * u, inertia))
     }
-}
-
-/// The largest power of two that is not above `x`; zero for zero and subnormal numbers.
-fn power_of_two_below(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
 }
 
 /// Length of a vector whose squares may underflow.
