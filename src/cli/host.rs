@@ -23,30 +23,27 @@ pub(super) struct FileHost<'a> {
 }
 
 impl<'a> FileHost<'a> {
-    /// The host of the script `main`, which may read what is in the folders `allow` too.
+    /// The host of the script `main`, which looks in the folders of `search` and may read what is in those of `allow`
+    /// too. A folder of `search` that is not there holds nothing; one of `allow` is a mistake.
     pub(super) fn new(
         main: &Source,
+        search: &[PathBuf],
         allow: &[PathBuf],
         terminal: &'a Terminal,
     ) -> Result<FileHost<'a>, Stop> {
-        let folder = match main {
+        let main = match main {
             Source::Stdin => canonical(Path::new("."))?,
-            Source::File(path) => {
-                let path = canonical(path)?;
-                path.parent().map_or_else(|| path.clone(), Path::to_owned)
-            }
+            Source::File(path) => parent(&canonical(path)?),
         };
-        let path = std::env::var_os("OPENSCADPATH").unwrap_or_default();
-        let named = std::env::split_paths(&path).filter(|folder| !folder.as_os_str().is_empty());
-        // A folder of OPENSCADPATH that is not there holds nothing; that is not worth stopping for.
+        let named = search.iter().filter(|folder| !folder.as_os_str().is_empty());
         let search: Vec<PathBuf> = named.filter_map(|folder| folder.canonicalize().ok()).collect();
-        let mut allowed = vec![folder.clone()];
+        let mut allowed = vec![main.clone()];
         allowed.extend(search.iter().cloned());
         for folder in allow {
             allowed.push(canonical(folder)?);
         }
         let (folders, meshes) = Default::default();
-        Ok(FileHost { main: folder, search, allowed, folders, meshes, terminal })
+        Ok(FileHost { main, search, allowed, folders, meshes, terminal })
     }
 
     /// The main script.
@@ -62,8 +59,7 @@ impl<'a> FileHost<'a> {
     }
 
     fn load_file(&mut self, path: &Path) -> Result<Loaded, String> {
-        let folder = path.parent().unwrap_or(path).to_owned();
-        self.load(read_file(path)?, path.display().to_string(), folder)
+        self.load(read_file(path)?, path.display().to_string(), parent(path))
     }
 
     fn load(&mut self, bytes: Vec<u8>, name: String, folder: PathBuf) -> Result<Loaded, String> {
@@ -97,8 +93,9 @@ impl<'a> FileHost<'a> {
         if self.allowed.iter().any(|folder| path.starts_with(folder)) {
             return Ok(path);
         }
-        let folder = path.parent().unwrap_or(&path).display();
-        Err(format!("`{name}` is outside of the folders that the script may read; --allow {folder} lets it"))
+        let folder = parent(&path);
+        let hint = format!("--allow {} lets it", folder.display());
+        Err(format!("`{name}` is outside of the folders that the script may read; {hint}"))
     }
 }
 
@@ -128,6 +125,115 @@ impl Host for FileHost<'_> {
     }
 }
 
+/// The folder of a file.
+fn parent(path: &Path) -> PathBuf {
+    path.parent().unwrap_or(path).to_owned()
+}
+
 fn canonical(path: &Path) -> Result<PathBuf, Stop> {
     path.canonicalize().map_err(|error| Stop::about(path.display(), plainly(&error)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::terminal::Style;
+    use std::fs;
+    use tempfile::TempDir;
+
+    struct World {
+        folder: TempDir,
+        terminal: Terminal,
+    }
+
+    impl World {
+        fn new(files: &[(&str, &str)]) -> World {
+            let folder = TempDir::new().unwrap();
+            for (name, text) in files {
+                let path = folder.path().join(name);
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                fs::write(path, text).unwrap();
+            }
+            let style = Style { colored: false, oneline: false };
+            World { folder, terminal: Terminal::new(style, true, false) }
+        }
+
+        fn path(&self, name: &str) -> PathBuf {
+            self.folder.path().join(name)
+        }
+
+        /// The host of `main/main.scad`, and the name it has been given.
+        fn host(&self, search: &[&str], allow: &[&str]) -> (FileHost<'_>, String) {
+            let folders = |names: &[&str]| names.iter().map(|name| self.path(name)).collect::<Vec<_>>();
+            let source = Source::File(self.path("main/main.scad"));
+            let host = FileHost::new(&source, &folders(search), &folders(allow), &self.terminal);
+            let mut host = host.unwrap();
+            let name = host.main(&source).unwrap().name;
+            (host, name)
+        }
+    }
+
+    #[test]
+    fn the_nearest_file_is_taken() {
+        let world = World::new(&[
+            ("main/main.scad", ""),
+            ("main/a.scad", "main"),
+            ("main/part/part.scad", ""),
+            ("main/part/a.scad", "part"),
+            ("lib/a.scad", "lib"),
+            ("lib/deep/b.scad", "lib"),
+        ]);
+        let (mut host, main) = world.host(&["gone", "lib"], &[]);
+        let part = host.script("part/part.scad", &main).unwrap().name;
+        assert_eq!(host.script("a.scad", &main).unwrap().text, "main");
+        assert_eq!(host.script("a.scad", &part).unwrap().text, "part");
+        assert_eq!(host.script("part.scad", &part).unwrap().name, part, "one name for one file");
+        assert_eq!(host.script("../main/./part/part.scad", &main).unwrap().name, part);
+        let deep = host.script("deep/b.scad", &part).unwrap().name;
+        assert_eq!(host.script("a.scad", &deep).unwrap().text, "main", "main before OPENSCADPATH");
+        let error = host.script("c.scad", &part).unwrap_err();
+        assert!(error.contains("`c.scad`") && error.contains("part or") && error.contains("lib"), "{error}");
+    }
+
+    #[test]
+    fn files_outside_are_refused_unless_allowed() {
+        let world = World::new(&[("main/main.scad", ""), ("main/x/y.scad", ""), ("secret/s.scad", "s")]);
+        let outside = world.path("secret/s.scad").display().to_string();
+        for name in ["../secret/s.scad", outside.as_str(), "x/../../secret/s.scad"] {
+            let (mut host, main) = world.host(&[], &[]);
+            let error = host.script(name, &main).unwrap_err();
+            assert!(error.contains("--allow"), "{error}");
+            let (mut host, main) = world.host(&[], &["secret"]);
+            assert_eq!(host.script(name, &main).unwrap().text, "s");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_lead_nowhere_new() {
+        let world = World::new(&[("main/main.scad", ""), ("secret/s.scad", "s")]);
+        std::os::unix::fs::symlink(world.path("secret"), world.path("main/link")).unwrap();
+        let (mut host, main) = world.host(&[], &[]);
+        assert!(host.script("link/s.scad", &main).unwrap_err().contains("--allow"));
+    }
+
+    #[test]
+    fn what_is_no_script_or_mesh() {
+        let world = World::new(&[
+            ("main/main.scad", ""),
+            ("main/folder/x", ""),
+            ("main/a.stl", "solid\nfacet"),
+            ("main/tri.off", "OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2"),
+            ("main/a.svg", "<svg/>"),
+        ]);
+        let (mut host, main) = world.host(&[], &[]);
+        for name in ["", "folder", "."] {
+            assert!(host.script(name, &main).unwrap_err().contains("folder"), "{name}");
+        }
+        assert!(host.script("a\0b", &main).is_err());
+        assert!(host.mesh("a.stl", &main).unwrap_err().contains("line 2"));
+        assert!(host.mesh("a.svg", &main).unwrap_err().contains("only .obj, .stl, .off, .ply can"));
+        let first = host.mesh("tri.off", &main).unwrap();
+        assert!(Arc::ptr_eq(&first, &host.mesh("./tri.off", &main).unwrap()), "read once");
+    }
 }

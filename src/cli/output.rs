@@ -186,3 +186,62 @@ fn create_beside(path: &Path) -> io::Result<(File, PathBuf)> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+    use crate::mesh::cuboid;
+    use tempfile::TempDir;
+
+    fn cube(size: f64) -> Mesh {
+        cuboid(Vec3::ZERO, Vec3::splat(size)).into_mesh()
+    }
+
+    fn names(folder: &TempDir) -> Vec<String> {
+        let entries = fs::read_dir(folder.path()).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn all_files_or_none() {
+        let folder = TempDir::new().unwrap();
+        let [obj, stl] = ["a.obj", "b.stl"].map(|name| folder.path().join(name));
+        fs::write(&obj, "old").unwrap();
+        let outputs = plan(&[obj.clone(), stl.clone()], None).unwrap();
+        // Too far for the f32 of STL, after the OBJ has been written.
+        let error = write(&outputs, &cube(1e40)).unwrap_err();
+        assert!(error.text().unwrap().contains("b.stl: vertex"), "{error:?}");
+        assert_eq!((fs::read(&obj).unwrap(), names(&folder)), (b"old".to_vec(), vec!["a.obj".to_owned()]));
+        write(&outputs, &cube(1e30)).unwrap();
+        assert_eq!(names(&folder), ["a.obj", "b.stl"]);
+        assert_eq!(crate::io::obj::read(&fs::read(&obj).unwrap()), Ok(cube(1e30)));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_permissions_stay() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = TempDir::new().unwrap();
+        let [real, link] = ["real.obj", "link.obj"].map(|name| folder.path().join(name));
+        fs::write(&real, "old").unwrap();
+        fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
+        symlink(&real, &link).unwrap();
+        write(&plan(std::slice::from_ref(&link), None).unwrap(), &cube(1.0)).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
+        assert_ne!(fs::read(&real).unwrap(), b"old");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_are_written_through() {
+        let out = |path: &str| plan(&[path.into()], Some(Format::Obj)).unwrap();
+        write(&out("/dev/null"), &cube(1.0)).unwrap();
+        let error = write(&out("/dev/full"), &cube(1.0)).unwrap_err();
+        assert!(error.text().unwrap().starts_with("/dev/full: "), "{error:?}");
+    }
+}

@@ -79,7 +79,7 @@ struct Limits {
     #[arg(long, value_name = "MIB", default_value_t = script::Options::default().max_bytes >> 20)]
     limit_memory: u64,
     /// Most time for evaluating and building, in seconds; none by default
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     limit_seconds: Option<Duration>,
 }
 
@@ -101,7 +101,9 @@ impl ScriptArgs {
         main: &input::Source,
         terminal: &'a Terminal,
     ) -> Result<FileHost<'a>, Stop> {
-        FileHost::new(main, &self.allow, terminal)
+        let path = std::env::var_os("OPENSCADPATH").unwrap_or_default();
+        let search: Vec<PathBuf> = std::env::split_paths(&path).collect();
+        FileHost::new(main, &search, &self.allow, terminal)
     }
 
     /// Ends the process when it takes too long, until it is dropped.
