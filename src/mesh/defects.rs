@@ -1,5 +1,6 @@
 use super::topology::sorted_half_edges;
 use super::{Mesh, Topology};
+use crate::numeric::DisjointSets;
 
 /// How many of each kind of defect a mesh has.
 ///
@@ -109,60 +110,28 @@ impl Defects {
     }
 
     fn count_vertices(&mut self, count: usize, triangles: &[[u32; 3]]) {
-        let fans = Fans::new(triangles);
+        let topology = Topology::new(triangles);
+        let (fans, fan_count) = fans(topology.twins());
+        let mut seen = vec![false; fan_count as usize];
         let mut fans_at = vec![0_usize; count];
-        for (_, vertex) in fans.roots(triangles) {
-            fans_at[vertex as usize] += 1;
+        for (&vertex, fan) in triangles.iter().flatten().zip(fans) {
+            if !std::mem::replace(&mut seen[fan as usize], true) {
+                fans_at[vertex as usize] += 1;
+            }
         }
         self.non_manifold_vertices = fans_at.iter().filter(|&&n| n > 1).count();
         self.unused_positions = fans_at.iter().filter(|&&n| n == 0).count();
     }
 }
 
-/// Corners joined into fans: two corners at one vertex are in one fan when a chain of twins leads from one to the
-/// other. Corner `c` is corner `c % 3` of triangle `c / 3`.
-pub(super) struct Fans {
-    parent: Vec<u32>,
-}
-
-impl Fans {
-    pub(super) fn new(triangles: &[[u32; 3]]) -> Fans {
-        let topology = Topology::new(triangles);
-        let mut fans = Fans { parent: (0..3 * triangles.len() as u32).collect() };
-        for half_edge in 0..3 * triangles.len() as u32 {
-            let twin = topology.twin(half_edge);
-            if twin != Topology::NONE {
-                fans.join(half_edge, Topology::next(twin));
-            }
+/// For each corner, the number of its fan, and how many fans there are. Two corners at one vertex are in one fan when a
+/// chain of twins leads from one to the other; `twins` names the twin of each half-edge or [`Topology::NONE`].
+pub(crate) fn fans(twins: &[u32]) -> (Vec<u32>, u32) {
+    let mut fans = DisjointSets::new(twins.len());
+    for (half_edge, &twin) in (0_u32..).zip(twins) {
+        if twin != Topology::NONE {
+            fans.join(half_edge, Topology::next(twin));
         }
-        fans
     }
-
-    /// The corner that stands for the fan of `corner`: the smallest one in it.
-    pub(super) fn root(&self, mut corner: u32) -> u32 {
-        while self.parent[corner as usize] != corner {
-            corner = self.parent[corner as usize];
-        }
-        corner
-    }
-
-    /// The roots of all fans, in order, with the vertex each stands at.
-    pub(super) fn roots<'a>(&'a self, triangles: &'a [[u32; 3]]) -> impl Iterator<Item = (u32, u32)> + 'a {
-        let is_root = |&c: &u32| self.parent[c as usize] == c;
-        (0..self.parent.len() as u32).filter(is_root).map(|c| (c, triangles[c as usize / 3][c as usize % 3]))
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.compress(a), self.compress(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-
-    fn compress(&mut self, mut corner: u32) -> u32 {
-        while self.parent[corner as usize] != corner {
-            let up = self.parent[corner as usize];
-            self.parent[corner as usize] = self.parent[up as usize];
-            corner = up;
-        }
-        corner
-    }
+    fans.numbered()
 }

@@ -4,9 +4,9 @@
 //! power of two, so the results depend neither on where the mesh is nor on its units. Moments follow B. Mirtich,
 //! *Fast and accurate computation of polyhedral mass properties* (1996), in the form by signed tetrahedra.
 
-use super::defects::Fans;
+use super::defects::fans;
 use super::topology::sorted_half_edges;
-use super::{Mesh, Solid};
+use super::{Mesh, Solid, Topology};
 use crate::math::{Aabb, Mat3, Vec3, power_of_two_below};
 use crate::numeric::compensated::DoubleDouble;
 use crate::par;
@@ -358,7 +358,7 @@ impl Counts {
             closed &= 2 * group.iter().filter(|h| h.reversed).count() == group.len();
             paired &= group.len() == 2;
         }
-        let manifold = closed && paired && Fans::new(triangles).roots(triangles).count() == vertices;
+        let manifold = closed && paired && fans(Topology::new(triangles).twins()).1 as usize == vertices;
         Counts { vertices, edges, triangles: triangles.len(), components: labels.count, closed, manifold }
     }
 

@@ -8,6 +8,7 @@ mod solid;
 mod topology;
 
 pub use defects::Defects;
+pub(crate) use defects::fans;
 pub use measure::{Measures, area, components, volume};
 pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;

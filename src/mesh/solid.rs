@@ -1,5 +1,6 @@
-use super::defects::Fans;
-use super::{Defects, Mesh};
+use super::defects::fans;
+use super::{Defects, Mesh, Topology};
+use crate::math::Vec3;
 
 /// A mesh that bounds a volume, checked once.
 ///
@@ -59,7 +60,7 @@ impl Solid {
     }
 
     /// Vertex positions, in model units.
-    pub fn positions(&self) -> &[crate::math::Vec3] {
+    pub fn positions(&self) -> &[Vec3] {
         &self.mesh.positions
     }
 
@@ -81,14 +82,10 @@ impl Solid {
 
 /// The same triangles with one vertex for each fan, in the order of their first corners.
 fn with_a_vertex_per_fan(mesh: &Mesh) -> Mesh {
-    let fans = Fans::new(&mesh.triangles);
-    let mut vertex_of_root = vec![u32::MAX; 3 * mesh.triangles.len()];
-    let mut positions = Vec::with_capacity(mesh.positions.len());
-    for (root, vertex) in fans.roots(&mesh.triangles) {
-        vertex_of_root[root as usize] = positions.len() as u32;
-        positions.push(mesh.positions[vertex as usize]);
+    let (fans, count) = fans(Topology::new(&mesh.triangles).twins());
+    let mut positions = vec![Vec3::ZERO; count as usize];
+    for (&vertex, &fan) in mesh.triangles.iter().flatten().zip(&fans) {
+        positions[fan as usize] = mesh.positions[vertex as usize];
     }
-    let corner = |c: usize| vertex_of_root[fans.root(c as u32) as usize];
-    let triangles = (0..mesh.triangles.len()).map(|t| [corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)]);
-    Mesh { triangles: triangles.collect(), positions }
+    Mesh { positions, triangles: fans.as_chunks().0.to_vec() }
 }

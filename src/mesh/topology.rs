@@ -32,6 +32,11 @@ impl Topology {
         self.twins[half_edge as usize]
     }
 
+    /// The twins of all half-edges, [`Topology::NONE`] where there is none.
+    pub fn twins(&self) -> &[u32] {
+        &self.twins
+    }
+
     /// The half-edge after this one around its triangle.
     pub fn next(half_edge: u32) -> u32 {
         if half_edge % 3 == 2 { half_edge - 2 } else { half_edge + 1 }

@@ -51,12 +51,11 @@ fn pair_wedges(points: &Points, lines: &[Line], fan: &mut [End], next: &mut [u32
 
 /// Orders ends at one vertex by angle, from straight down.
 fn counter_clockwise(points: &Points, lines: &[Line], a: &End, b: &End) -> Ordering {
-    if a.edge == b.edge && a.outgoing == b.outgoing {
-        return Ordering::Equal;
-    }
     b.rightward.cmp(&a.rightward).then_with(|| {
         // Both on one side of the vertex: below comes first on the right, above on the left.
         let order = lines[b.line as usize].side(points, a.other).cmp(&0);
-        if a.rightward { order } else { order.reverse() }
+        let order = if a.rightward { order } else { order.reverse() };
+        // Two sides of a slit: the area lies clockwise of the one coming in and counter-clockwise of the one going out.
+        order.then(a.outgoing.cmp(&b.outgoing))
     })
 }

@@ -3,6 +3,7 @@
 use super::sweep::{Planar, Visitor};
 use super::{Chart, Line, PointId, Points};
 use crate::math::Aabb;
+use crate::numeric::DisjointSets;
 use crate::spatial::Bvh;
 use std::cmp::Ordering;
 
@@ -219,25 +220,13 @@ fn sweep_order(planar: &mut Planar, points: &Points, lines: &[Line]) -> Vec<u32>
 
 /// Cells as a union of intervals: those that merge become one.
 struct CellFinder<'a> {
-    parent: Vec<u32>,
+    cells: DisjointSets,
     edges: &'a mut [SubEdge],
-}
-
-impl CellFinder<'_> {
-    fn root(&mut self, mut cell: u32) -> u32 {
-        while self.parent[cell as usize] != cell {
-            let up = self.parent[cell as usize];
-            self.parent[cell as usize] = self.parent[up as usize];
-            cell = up;
-        }
-        cell
-    }
 }
 
 impl Visitor for CellFinder<'_> {
     fn open(&mut self, _vertex: u32, _below: u32) -> u32 {
-        self.parent.push(self.parent.len() as u32);
-        self.parent.len() as u32 - 1
+        self.cells.add()
     }
 
     fn close(&mut self, _interval: u32, _vertex: u32) {}
@@ -251,9 +240,7 @@ impl Visitor for CellFinder<'_> {
     }
 
     fn merge(&mut self, lower: u32, upper: u32, _vertex: u32) -> u32 {
-        let (a, b) = (self.root(lower), self.root(upper));
-        self.parent[a.max(b) as usize] = a.min(b);
-        a.min(b)
+        self.cells.join(lower, upper)
     }
 
     fn start(&mut self, edge: u32, below: u32, above: u32) {
@@ -269,18 +256,9 @@ fn find_cells(
     mut edges: Vec<SubEdge>,
     jumps: Vec<Jump>,
 ) -> Overlay {
-    let mut finder = CellFinder { parent: vec![0], edges: &mut edges };
+    let mut finder = CellFinder { cells: DisjointSets::new(1), edges: &mut edges };
     planar.sweep(points, lines, 0, &mut finder);
-    let mut names = vec![u32::MAX; finder.parent.len()];
-    let mut count = 0;
-    for cell in 0..finder.parent.len() as u32 {
-        let root = finder.root(cell) as usize;
-        if names[root] == u32::MAX {
-            names[root] = count;
-            count += 1;
-        }
-        names[cell as usize] = names[root];
-    }
+    let (names, count) = finder.cells.numbered();
     for edge in &mut edges {
         (edge.below, edge.above) = (names[edge.below as usize], names[edge.above as usize]);
     }

@@ -68,6 +68,11 @@ impl Plane {
         [self.rounded[0], self.rounded[1], self.rounded[2]]
     }
 
+    /// The offset rounded to a double.
+    pub(crate) fn rounded_offset(&self) -> f64 {
+        self.rounded[3]
+    }
+
     /// On which side of the plane the point lies: 1 where the normal points, 0 on the plane, -1 behind.
     #[inline]
     pub fn side(&self, points: &Points, point: PointId) -> i32 {

@@ -17,7 +17,8 @@ pub struct Boundary {
 }
 
 /// Triangles that fill the area to the left of `boundary`, counter-clockwise about the chart's normal, with no vertices
-/// but those of the boundary. Boundary edges must meet only at common ends, bound an area, and come once each.
+/// but those of the boundary. Boundary edges must meet only at common ends and bound an area; an edge that comes in both
+/// directions is a slit, with the area on both sides.
 pub fn triangulate(
     chart: &Chart,
     points: &Points,
@@ -27,24 +28,23 @@ pub fn triangulate(
     if let Some(triangle) = single_triangle(boundary) {
         return vec![triangle];
     }
-    let ends: Vec<([PointId; 2], u32)> = boundary.iter().map(|edge| (edge.ends, edge.line)).collect();
-    let mut planar = Planar::new(chart, points, &ends);
+    let mut directed: Vec<[PointId; 2]> = boundary.iter().map(|edge| edge.ends).collect();
+    directed.sort_unstable();
+    let mut planar = Planar::new(chart, points, &once_each(boundary));
     planar.sort(points, lines);
-    let directed = directed_edges(&planar, boundary);
-    let inside = planar.edges.iter().map(|e| {
-        directed.binary_search(&[planar.vertices[e.left as usize], planar.vertices[e.right as usize]]).is_ok()
-    });
+    let ends = planar.edges.iter().map(|e| [e.left, e.right].map(|v| planar.vertices[v as usize]));
+    let inside_above = ends.map(|ends| directed.binary_search(&ends).is_ok());
     let mut filler = Filler {
         chart,
         points,
         vertices: &planar.vertices,
-        inside_above: inside.collect(),
+        inside_above: inside_above.collect(),
         chains: vec![None],
         triangles: Vec::with_capacity(boundary.len()),
     };
     planar.sweep(points, lines, 0, &mut filler);
     let mut triangles = filler.triangles;
-    flip_towards_delaunay(chart, points, &planar, &mut triangles);
+    flip_towards_delaunay(chart, points, &planar, &directed, &mut triangles);
     let vertices = &planar.vertices;
     triangles.into_iter().map(|t| t.map(|v| vertices[v as usize])).collect()
 }
@@ -57,11 +57,15 @@ fn single_triangle(boundary: &[Boundary]) -> Option<[PointId; 3]> {
     (other.ends[0] == b).then_some([a, b, other.ends[1]])
 }
 
-/// The directed edges, sorted.
-fn directed_edges(_planar: &Planar, boundary: &[Boundary]) -> Vec<[PointId; 2]> {
-    let mut directed: Vec<[PointId; 2]> = boundary.iter().map(|edge| edge.ends).collect();
-    directed.sort_unstable();
-    directed
+/// The edges of a boundary, one for both sides of a slit.
+fn once_each(boundary: &[Boundary]) -> Vec<([PointId; 2], u32)> {
+    let undirected = boundary
+        .iter()
+        .map(|edge| ([edge.ends[0].min(edge.ends[1]), edge.ends[0].max(edge.ends[1])], edge.line));
+    let mut edges: Vec<([PointId; 2], u32)> = undirected.collect();
+    edges.sort_unstable();
+    edges.dedup_by_key(|&mut (ends, _)| ends);
+    edges
 }
 
 /// Fills intervals inside the area. Each keeps the chain of vertices that bounds it on the left, from the left end of
@@ -172,12 +176,26 @@ impl Visitor for Filler<'_> {
 }
 
 /// Flips inner edges until none fails the circle test by more than the error of doubles.
-fn flip_towards_delaunay(chart: &Chart, points: &Points, planar: &Planar, triangles: &mut [[u32; 3]]) {
+fn flip_towards_delaunay(
+    chart: &Chart,
+    points: &Points,
+    planar: &Planar,
+    fixed: &[[PointId; 2]],
+    triangles: &mut [[u32; 3]],
+) {
     if triangles.len() < 2 {
         return;
     }
     let flat: Vec<[f64; 2]> = flat_coordinates(chart, points, &planar.vertices);
     let mut twins = twins_of(triangles);
+    let is_fixed = |h: usize| {
+        let ends =
+            [triangles[h / 3][h % 3], triangles[h / 3][(h + 1) % 3]].map(|v| planar.vertices[v as usize]);
+        fixed.binary_search(&ends).is_ok()
+    };
+    for slit in (0..twins.len()).filter(|&h| twins[h] != u32::MAX && is_fixed(h)).collect::<Vec<_>>() {
+        twins[slit] = u32::MAX;
+    }
     let is_inner = |h: &u32, twins: &[u32]| twins[*h as usize] != u32::MAX;
     let mut queue: Vec<u32> = (0..twins.len() as u32).filter(|h| is_inner(h, &twins)).collect();
     while let Some(h) = queue.pop() {

@@ -1,0 +1,151 @@
+//! Winding numbers of a place by a ray.
+//!
+//! The ray runs along +z. It is the ray that is moved, by (e, e^2) with e as small as it takes, and never the geometry, so
+//! it meets no edge and no vertex.
+
+use super::scene::{Member, Scene};
+use crate::math::{Aabb, Vec3};
+use crate::numeric::Wide;
+use crate::polygon::exact::{Plane, PointId, Points, Site};
+use crate::spatial::Bvh;
+
+/// A triangle of a surface; the ray starts beside its centroid.
+pub(super) struct Anchor {
+    pub(super) corners: [PointId; 3],
+    pub(super) plane: Plane,
+}
+
+/// Casts rays through a scene.
+pub(super) struct RayCaster<'a> {
+    scene: &'a Scene,
+    boxes: Vec<Aabb>,
+    members: Bvh,
+    /// The triangles of each operand by place, made when a ray first comes near it.
+    triangles: Vec<Option<(Vec<Aabb>, Bvh)>>,
+}
+
+impl<'a> RayCaster<'a> {
+    pub(super) fn new(scene: &'a Scene) -> RayCaster<'a> {
+        let boxes: Vec<Aabb> = scene.members.iter().map(|member| member.bounds).collect();
+        let members = Bvh::new(&boxes);
+        let triangles = scene.members.iter().map(|_| None).collect();
+        RayCaster { scene, boxes, members, triangles }
+    }
+
+    /// Winding numbers right beside the anchor's centroid, and whether that is the side to which its normal points.
+    pub(super) fn cast(&mut self, anchor: &Anchor) -> (bool, Vec<(u32, i32)>) {
+        // Above the plane, or, when that stands upright, to where the ray is moved.
+        let side = [2, 0, 1].map(|axis| anchor.plane.normal_sign(axis)).into_iter().find(|&sign| sign != 0);
+        let start = Start::new(&self.scene.points, anchor.corners);
+        let column = start.column();
+        let mut near = Vec::new();
+        self.members.touching(&self.boxes, column, |member| near.push(member));
+        near.sort_unstable();
+        let mut winding = Vec::new();
+        for member in near {
+            let times = self.count(member, &start, column);
+            if times != 0 {
+                winding.push((member, times));
+            }
+        }
+        (side == Some(1), winding)
+    }
+
+    /// How often an operand winds around the start of the ray.
+    fn count(&mut self, member: u32, start: &Start, column: Aabb) -> i32 {
+        let scene = self.scene;
+        let Member { triangles, .. } = &scene.members[member as usize];
+        let (boxes, bvh) = self.triangles[member as usize].get_or_insert_with(|| {
+            let boxes: Vec<Aabb> = triangles.clone().map(|t| scene.bounds_of(t)).collect();
+            let bvh = Bvh::new(&boxes);
+            (boxes, bvh)
+        });
+        let mut times = 0;
+        bvh.touching(boxes, column, |i| times += start.crossing(scene, triangles.start + i));
+        times
+    }
+}
+
+type Numerator = Wide<19>;
+type Denominator = Wide<18>;
+
+/// The centroid of three points, exactly.
+struct Start {
+    rounded: Vec3,
+    /// Bound on the error of each rounded coordinate.
+    error: f64,
+    numerators: [Numerator; 3],
+    denominator: Denominator,
+}
+
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+impl Start {
+    fn new(points: &Points, corners: [PointId; 3]) -> Start {
+        let places = corners.map(|p| points.rounded(p));
+        let [(a, u), (b, v), (c, w)] = corners.map(|p| points.homogeneous(p));
+        let product = |x: &Wide<6>, y: &Wide<6>| -> Wide<12> { x.times(y) };
+        let (vw, wu, uv) = (product(&v, &w), product(&w, &u), product(&u, &v));
+        let numerator =
+            |i: usize| -> Numerator { a[i].times(&vw).plus(&b[i].times(&wu)).plus(&c[i].times(&uv)) };
+        let denominator: Denominator = uv.times::<6, 18>(&w).times(&Wide::<1>::from(3_i64));
+        let largest = places.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+        Start {
+            rounded: (places[0] + places[1] + places[2]) / 3.0,
+            error: 8.0 * UNIT * largest,
+            numerators: [numerator(0), numerator(1), numerator(2)],
+            denominator,
+        }
+    }
+
+    /// A box around the ray.
+    fn column(&self) -> Aabb {
+        let min = self.rounded - Vec3::splat(self.error);
+        let max = self.rounded + Vec3::splat(self.error);
+        Aabb { min, max: Vec3::new(max.x, max.y, f64::INFINITY) }
+    }
+
+    /// 1 where the ray leaves through a triangle, -1 where it enters, 0 where it passes by.
+    fn crossing(&self, scene: &Scene, triangle: u32) -> i32 {
+        let [a, b, c] = scene.sites_of(triangle);
+        let turn = self.turn(a, b);
+        if turn == 0 || self.turn(b, c) != turn || self.turn(c, a) != turn {
+            return 0;
+        }
+        // The triangle faces up when it runs counter-clockwise around the ray; the start is below it when it is behind.
+        let plane = scene.plane_through(triangle);
+        if self.side(&plane) == -turn { turn } else { 0 }
+    }
+
+    /// 1 when the moved ray passes to the left of the segment seen from above; 0 only for an upright segment.
+    fn turn(&self, a: Site, b: Site) -> i32 {
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let [ex, ey] = along.map(|e| e as f64);
+        let place = [0, 1].map(|i| self.rounded[i] - a[i] as f64);
+        let (left, right) = (ex * place[1], ey * place[0]);
+        let slack = |i: usize| self.error + 4.0 * UNIT * (self.rounded[i].abs() + (a[i] as f64).abs());
+        let bound = 2.0 * (ex.abs() * slack(1) + ey.abs() * slack(0));
+        if (left - right).abs() > bound {
+            return if left > right { 1 } else { -1 };
+        }
+        let offset = |i: usize| self.numerators[i].minus(&Wide::<1>::from(a[i]).times(&self.denominator));
+        let product = |e: i64, offset: Numerator| -> Wide<20> { Wide::<1>::from(e).times(&offset) };
+        let sign = product(along[0], offset(1)).minus(&product(along[1], offset(0))).signum();
+        // The move changes the value by -ey e + ex e^2.
+        [sign, -along[1].signum() as i32, along[0].signum() as i32].into_iter().find(|&s| s != 0).unwrap_or(0)
+    }
+
+    /// On which side of a plane the start lies.
+    fn side(&self, plane: &Plane) -> i32 {
+        let n = Vec3::from_array(plane.rounded_normal());
+        let offset = plane.rounded_offset();
+        let value = n.dot(self.rounded) - offset;
+        let slack = Vec3::splat(self.error) + 8.0 * UNIT * self.rounded.abs();
+        let bound = 2.0 * (n.abs().dot(slack) + 8.0 * UNIT * offset.abs());
+        if value.abs() > bound {
+            return if value > 0.0 { 1 } else { -1 };
+        }
+        let value: Wide<21> = plane.at_fraction(&self.numerators, &self.denominator);
+        value.signum()
+    }
+}
