@@ -2,7 +2,7 @@
 
 use ogee::io::{Format, read_mesh, write_mesh};
 use ogee::math::Vec3;
-use ogee::mesh::{Mesh, cuboid};
+use ogee::mesh::{Mesh, cuboid, volume};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -197,6 +197,39 @@ fn info_describes_closed_and_broken_meshes() {
     assert!(text.contains("volume       8.0\n") && text.contains("defects      none\n"), "{text}");
     let fed = bench.feed("info - --format ply --json", &bench.get("whole.ply")).json();
     assert_eq!(fed["volume"], 8.0);
+}
+
+#[test]
+fn booleans_of_files_in_any_format() {
+    let bench = Bench::new();
+    bench
+        .put_mesh("a.stl", &cube(0.0, 2.0))
+        .put_mesh("b.ply", &cube(1.0, 3.0))
+        .put_mesh("c.off", &cube(5.0, 6.0));
+    let cases =
+        [("union", 8.0 + 7.0 + 1.0), ("difference", 7.0), ("intersection", 0.0), ("xor", 7.0 + 7.0 + 1.0)];
+    for (operation, expected) in cases {
+        let ran = bench.run(&format!("boolean {operation} a.stl b.ply c.off -o out.obj -o out.stl"));
+        assert_eq!(ran.code, Some(0), "{}", ran.err);
+        assert_eq!(
+            (volume(&bench.mesh("out.obj")), volume(&bench.mesh("out.stl"))),
+            (expected, expected),
+            "{operation}"
+        );
+    }
+    let ran = bench.run("boolean intersection a.stl b.ply -o - --format off -q");
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+    assert_eq!(volume(&read_mesh(Format::Off, &ran.out).expect("a mesh")), 1.0);
+}
+
+#[test]
+fn an_operand_that_is_open_leaves_the_old_result() {
+    let bench = Bench::new();
+    let mut open = cube(0.0, 1.0);
+    open.triangles.pop();
+    bench.put_mesh("a.obj", &cube(0.0, 1.0)).put_mesh("open.obj", &open).put("out.obj", "old");
+    bench.fails("boolean union a.obj open.obj -o out.obj", 1, &["open.obj", "3 open edges"]);
+    assert_eq!(bench.get("out.obj"), b"old");
 }
 
 #[test]

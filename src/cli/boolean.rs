@@ -63,7 +63,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let meshes = times
         .stage(terminal, "read", "reading", || sources.iter().map(read).collect::<Result<Vec<_>, _>>())?;
     let operands: Vec<&Mesh> = meshes.iter().collect();
-    let tree = Tree::Node(args.operation.op(), (0..operands.len()).map(Tree::Leaf).collect());
+    let tree = Tree::flat(args.operation.op(), operands.len());
     let combined = times.stage(terminal, "build", "combining", || boolean::evaluate(&tree, &operands));
     let solid = combined.map_err(|error| explain(&error, &sources))?.solid;
     times.stage(terminal, "write", "writing", || output::write(&outputs, solid.mesh()))?;
@@ -80,14 +80,10 @@ fn read(source: &Source) -> Result<Mesh, Stop> {
     }
 }
 
-/// The error with the name of the operand and all that is wrong with it.
+/// The error with the name of the operand that it is about.
 fn explain(error: &BooleanError, sources: &[Source]) -> Stop {
     match error {
-        BooleanError::NotClosed { operand, defects } => {
-            let rows = defects.rows();
-            let some = rows.iter().filter(|(_, count)| *count > 0);
-            let list: Vec<String> = some.map(|(name, count)| format!("{count} {name}")).collect();
-            Stop::about(&sources[*operand], format!("the mesh is not closed: {}", list.join(", ")))
-        }
+        BooleanError::NotClosed { operand, .. } => Stop::about(&sources[*operand], error),
+        BooleanError::NoSuchOperand { .. } => Stop::Error(error.to_string()),
     }
 }
