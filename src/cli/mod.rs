@@ -12,6 +12,7 @@ mod info;
 mod input;
 mod model;
 mod output;
+mod render;
 mod settings;
 mod stop;
 mod summary;
@@ -47,6 +48,7 @@ enum Command {
     Build(build::Args),
     Check(check::Args),
     Info(info::Args),
+    Render(Box<render::Args>),
     Boolean(boolean::Args),
 }
 
@@ -56,6 +58,7 @@ impl Command {
             Command::Build(args) => build::run(args, terminal),
             Command::Check(args) => check::run(args, terminal),
             Command::Info(args) => info::run(args, terminal),
+            Command::Render(args) => render::run(args, terminal),
             Command::Boolean(args) => boolean::run(args, terminal),
         }
     }

@@ -74,7 +74,7 @@ impl Ground {
 /// For each cell, the free height between the ground and what is above it; infinite under the sky.
 fn gaps(scene: &Scene<'_>, middle: Vec3, width: f64) -> Vec<f64> {
     let size = CELLS as u32;
-    let view = scene.view.from_below(middle, width, size);
+    let view = scene.view.beneath(middle, width, size);
     let below = scene.reprojected(&view);
     let film = Film::expose(&below, &bin_triangles(&below, size, size), None, size, size);
     film.pixels.iter().map(|pixel| f64::from(pixel.depth).max(0.0)).collect()

@@ -25,6 +25,8 @@ mod lines;
 mod occlusion;
 mod raster;
 mod scene;
+#[cfg(test)]
+mod tests;
 
 pub use camera::{Camera, Fit, Projection};
 
@@ -53,11 +55,11 @@ pub struct Style {
     pub edges: Option<Edges>,
     /// Colour behind everything; `None` is transparent.
     pub background: Option<[f32; 3]>,
-    /// Colour and opacity of triangles where `colors` says nothing. Opacity is the share of a pixel's samples that a
+    /// Colour and opacity of triangles that have none of their own. Opacity is the share of a pixel's samples that a
     /// surface covers, in sixteenths.
     pub material: [f32; 4],
-    /// Colour and opacity of each triangle; empty, or one for each.
-    pub colors: Vec<[f32; 4]>,
+    /// Colour and opacity of each triangle, `None` for the material; empty, or one for each.
+    pub colors: Vec<Option<[f32; 4]>>,
     /// Whether corners get less ambient light.
     pub occlusion: bool,
     /// Whether the model throws a soft shadow on the ground at its lowest point.
@@ -89,7 +91,7 @@ impl Default for Style {
             crease: std::f64::consts::PI / 6.0,
             edges: None,
             background: Some([0.965, 0.961, 0.953]),
-            material: [0.80, 0.785, 0.76, 1.0],
+            material: [0.745, 0.735, 0.715, 1.0],
             colors: Vec::new(),
             occlusion: true,
             shadow: true,
