@@ -28,8 +28,8 @@ pub(super) struct Shade {
     pub(super) ambient: Light,
 }
 
-const SKY: Light = [0.45, 0.49, 0.55];
-const FLOOR: Light = [0.225, 0.218, 0.21];
+const SKY: Light = [0.44, 0.475, 0.54];
+const FLOOR: Light = [0.225, 0.215, 0.205];
 
 /// Sharpness of the highlight, that of a satin surface: Blinn's exponent is two to this.
 const GLOSS: u32 = 5;
@@ -42,7 +42,7 @@ impl Studio {
             light,
             glint,
         };
-        let key = lamp(-0.56, 0.64, -0.76, [0.97, 0.93, 0.86], 0.10);
+        let key = lamp(-0.56, 0.64, -0.76, [0.98, 0.92, 0.855], 0.10);
         let fill = lamp(0.85, 0.10, -0.60, [0.12, 0.145, 0.19], 0.03);
         Studio { lamps: [key, fill], zenith }
     }

@@ -91,7 +91,7 @@ impl Default for Style {
             crease: std::f64::consts::PI / 6.0,
             edges: None,
             background: Some([0.965, 0.961, 0.953]),
-            material: [0.745, 0.735, 0.715, 1.0],
+            material: [0.79, 0.767, 0.735, 1.0],
             colors: Vec::new(),
             occlusion: true,
             shadow: true,
@@ -249,7 +249,8 @@ fn finish(
     background: Option<Light>,
     line_color: Light,
 ) -> (Light, f32) {
-    let surface = add(pixel.direct, pixel.ambient, ambient);
+    // A corner that gets little from the sky gets less from the lamps too, which are no points.
+    let surface = add(pixel.direct.map(|x| x * (0.5 + 0.5 * ambient)), pixel.ambient, ambient);
     let free = 1.0 - pixel.coverage;
     let behind = background.unwrap_or([0.0; 3]);
     let opacity = if background.is_some() { 1.0 } else { pixel.coverage + free * darkness };
