@@ -5,6 +5,7 @@
 
 mod boolean;
 mod build;
+mod builtins;
 mod check;
 mod diagnostic;
 mod host;
@@ -48,6 +49,7 @@ enum Command {
     Check(check::Args),
     Info(info::Args),
     Boolean(boolean::Args),
+    Builtins(builtins::Args),
 }
 
 impl Command {
@@ -57,6 +59,7 @@ impl Command {
             Command::Check(args) => check::run(args, terminal),
             Command::Info(args) => info::run(args, terminal),
             Command::Boolean(args) => boolean::run(args, terminal),
+            Command::Builtins(args) => builtins::run(args),
         }
     }
 }
