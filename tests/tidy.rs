@@ -15,6 +15,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("serde_json", &["io", "cli"]),
     ("siphasher", &["numeric/hash.rs"]),
     ("spade", &["polygon/triangulate.rs"]),
+    ("stacker", &["script/stack.rs"]),
     ("tobj", &["io/obj.rs"]),
 ];
 
