@@ -1,7 +1,7 @@
 use super::{Parse, Parser};
 use crate::script::ast::{
-    Argument, BinaryOp, Binding, Call, Callee, Expr, ExprId, Function, FunctionId, Let, Parameter, Place, Room,
-    Slot, Target, UnaryOp, While,
+    Argument, BinaryOp, Binding, Call, Callee, Expr, ExprId, Function, FunctionId, Let, Parameter, Place,
+    Room, Slot, Target, UnaryOp, While,
 };
 use crate::script::diagnostic::Span;
 use crate::script::lexer::{Keyword, TokenKind};
@@ -170,9 +170,10 @@ impl Parser<'_> {
     fn at_expression(&self) -> bool {
         match self.peek() {
             TokenKind::Mark(mark) => matches!(*mark, "(" | "[") || unary(mark).is_some(),
-            TokenKind::Keyword(keyword) => {
-                !matches!(keyword, Keyword::Else | Keyword::Each | Keyword::For | Keyword::If | Keyword::Module)
-            }
+            TokenKind::Keyword(keyword) => !matches!(
+                keyword,
+                Keyword::Else | Keyword::Each | Keyword::For | Keyword::If | Keyword::Module
+            ),
             TokenKind::Number(_) | TokenKind::Text(_) | TokenKind::Name(_) => true,
             TokenKind::Include(_) | TokenKind::Use(_) | TokenKind::End => false,
         }
