@@ -118,7 +118,7 @@ fn cube(min: f64, max: f64) -> Mesh {
 #[test]
 fn help_and_mistyped_commands() {
     let bench = Bench::new();
-    for command in ["build", "check", "info", "boolean"] {
+    for command in ["build", "check", "info", "boolean", "builtins"] {
         let ran = bench.run(&format!("{command} --help"));
         assert_eq!(ran.code, Some(0));
         let text = String::from_utf8(ran.out).expect("text");
@@ -243,4 +243,117 @@ fn a_reader_that_leaves_is_no_error() {
         let ran = Ran::from(child.wait_with_output().expect("the program"));
         assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""), "{line}");
     }
+}
+
+const NOTCHED: &str = "size = 2;\ndifference() {\n  cube(size);\n  translate([1, 1, 1]) cube(size);\n}\n";
+
+#[test]
+fn a_script_becomes_files() {
+    let bench = Bench::new();
+    bench.put("a.scad", NOTCHED).put("out.obj", "old");
+    let ran = bench.run("build a.scad -o out.obj -o out.stl -o out.off -o out.ply --strict --jobs 2");
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    for name in ["out.obj", "out.stl", "out.off", "out.ply"] {
+        assert_eq!(volume(&bench.mesh(name)), 7.0, "{name}");
+        assert!(ran.err.contains(&format!("{name}: ")), "{}", ran.err);
+    }
+    let summary = bench.run("build a.scad -D size=4 --summary json").json();
+    assert_eq!((&summary["volume"], &summary["closed"]), (&37.0.into(), &true.into()));
+    assert_eq!((&summary["genus"], &summary["components"]), (&0.into(), &1.into()));
+    assert!(summary["seconds"]["build"].as_f64().expect("seconds") >= 0.0);
+    let fed = bench.feed("build - -o - --format stl-ascii -q", NOTCHED.as_bytes());
+    assert_eq!(volume(&read_mesh(Format::StlAscii, &fed.out).expect("a mesh")), 7.0);
+    let region = bench.feed("build - --summary json", b"square(3);").json();
+    assert_eq!((&region["dimension"], &region["area"]), (&2.into(), &9.0.into()));
+}
+
+#[test]
+fn errors_point_and_leave_the_old_result() {
+    let bench = Bench::new();
+    bench.put("typo.scad", "cube(1);\nshpere(2);\n").put("syntax.scad", "cube(1;\n").put("a.obj", "old");
+    bench
+        .put("flat.scad", "square(1);\n")
+        .put("open.scad", "import(\"open.off\");\n")
+        .put("far.scad", "cube(1e300);\n");
+    bench.put("main.scad", "include <gone.scad>\ncube(1);\n").put("import.scad", "import(\"cut.stl\");\n");
+    bench.put("cut.stl", "solid\nfacet\n").put("ring.scad", "include <ring.scad>\ncube(1);\n");
+    let mut open = cube(0.0, 1.0);
+    open.triangles.pop();
+    bench.put_mesh("open.off", &open);
+    bench.fails("build syntax.scad -o a.obj", 1, &["syntax.scad:1:7", "cube(1;", "^"]);
+    bench.fails("build flat.scad -o a.obj", 1, &["plane region", "linear_extrude"]);
+    bench.fails("build open.scad -o a.obj", 1, &["open edges"]);
+    bench.fails("build open.scad -o a.obj --strict", 4, &["open edges"]);
+    bench.fails("build far.scad -o a.obj -o a.stl", 1, &["a.stl: vertex", "f32"]);
+    assert_eq!(bench.get("a.obj"), b"old");
+    let typo = bench.run("check typo.scad").err;
+    for part in ["typo.scad:2:1", "2 | shpere(2);", "^^^^^^", "sphere"] {
+        assert!(typo.contains(part), "{part}: {typo}");
+    }
+    let typo = bench.run("check typo.scad --oneline").err;
+    assert!(typo.contains(" in file typo.scad, line 2\n"), "{typo}");
+    for (script, part) in [("main", "gone.scad"), ("import", "line 2"), ("ring", "ring.scad")] {
+        let ran = bench.run(&format!("check {script}.scad"));
+        assert!(ran.code == Some(0) || ran.code == Some(1), "{script}: {ran:?}");
+        assert!(ran.err.contains(part), "{script}: {}", ran.err);
+    }
+}
+
+#[test]
+fn limits_have_their_own_exit_code() {
+    let bench = Bench::new();
+    bench.put("loop.scad", "for (i = [1 : 1e9]) { x = i; }\n").put("sphere.scad", "sphere(1, $fn = 1e7);\n");
+    bench.put("deep.scad", "function f(n) = 1 + f(n + 1);\necho(f(0));\n");
+    bench.put("forever.scad", "function f(n) = f(n + 1);\necho(f(0));\n");
+    bench.fails("check loop.scad --limit-steps 10000", 3, &["loop.scad"]);
+    bench.fails("check forever.scad --limit-steps 10000", 3, &["forever.scad"]);
+    bench.fails("check forever.scad --limit-seconds 0.2", 3, &["0.2 s"]);
+    bench.fails("check deep.scad --limit-depth 100", 3, &["deep.scad"]);
+    bench.fails("check deep.scad", 3, &["deep.scad"]);
+    bench.fails("build sphere.scad -o x.obj", 3, &["sphere.scad"]);
+}
+
+#[test]
+fn scripts_say_things_on_standard_error() {
+    let bench = Bench::new();
+    bench.put("say.scad", "echo(\"hi\", 1);\nfor (i = [0 : 99]) cube(nothing);\n");
+    let ran = bench.run("check say.scad");
+    assert_eq!((ran.code, ran.out.as_slice()), (Some(0), &b""[..]), "{}", ran.err);
+    assert!(ran.err.starts_with("ECHO: \"hi\", 1\n"), "{}", ran.err);
+    assert!(ran.err.contains("more warnings about the same places"), "{}", ran.err);
+    assert!(ran.err.len() < 4000, "{}", ran.err);
+    assert_eq!(bench.run("check say.scad -q").err, "");
+    let plain = bench.run("check say.scad").err;
+    let colored = bench.run("check say.scad --color always").err;
+    assert!(colored.contains('\u{1b}') && !plain.contains('\u{1b}'));
+    bench.put("latin.scad", b"// caf\xe9\necho(\"\xfc\");\n");
+    let latin = bench.run("check latin.scad").err;
+    assert!(latin.contains("Latin-1") && latin.contains("ECHO: \"\u{fc}\""), "{latin}");
+}
+
+#[test]
+fn scripts_read_only_what_they_may() {
+    let bench = Bench::new();
+    bench.put("a/main.scad", "use <lib.scad>\nimport(\"../b/part.off\");\npart();\n");
+    bench.put("a/lib.scad", "module part() cube(2);\n").put_mesh("b/part.off", &cube(5.0, 6.0));
+    let refused = bench.run("build a/main.scad --summary json");
+    assert!(refused.err.contains("--allow"), "{}", refused.err);
+    let allowed = bench.run("build a/main.scad --summary json --allow b").json();
+    assert_eq!(allowed["volume"], 9.0);
+    bench.put("far.scad", "use <lib.scad>\npart();\n");
+    let mut command = bench.command("build far.scad --summary json");
+    let ran = Ran::from(command.env("OPENSCADPATH", "a").output().expect("the program"));
+    assert_eq!(ran.json()["volume"], 8.0);
+}
+
+#[test]
+fn builtins_are_listed() {
+    let bench = Bench::new();
+    let all = String::from_utf8(bench.run("builtins").out).expect("text");
+    for part in ["Modules\n", "Functions\n", "  cube(", "  lookup("] {
+        assert!(all.contains(part), "{part}: {all}");
+    }
+    let one = String::from_utf8(bench.run("builtins cube").out).expect("text");
+    assert!(one.lines().count() == 3 && one.contains("cube("), "{one}");
+    bench.fails("builtins cubes", 1, &["cubes"]);
 }

@@ -12,9 +12,11 @@ const HOMES: &[(&str, &[&str])] = &[
     ("libm", &["math"]),
     ("png", &["io/png.rs"]),
     ("rayon", &["par.rs"]),
+    ("robust", &["numeric/predicates.rs"]),
     ("serde_json", &["io", "cli"]),
     ("siphasher", &["numeric/hash.rs"]),
     ("spade", &["polygon/triangulate.rs"]),
+    ("stacker", &["script/stack.rs"]),
 ];
 
 /// Modules in the order `lib.rs` declares them, each with the layer comment it stands under.

@@ -107,10 +107,11 @@ fn birth_of(carriers: &Carriers, cell: u32) -> Option<Birth> {
     carrier.births[(cell - carrier.first_cell) as usize]
 }
 
-/// A boundary edge of a face, with the face on its left in the chart.
+/// A boundary edge of a face, with the face on its left seen from outside.
 #[derive(Clone, Copy)]
 struct Rim {
-    boundary: Boundary,
+    ends: [PointId; 2],
+    line: u32,
     face: u32,
     /// The fin it came from.
     fin: u32,
@@ -147,12 +148,13 @@ impl Rims {
             }
             let edge = &carriers.carriers[carrier as usize].overlay.edges[edge as usize];
             let [left, right] = edge.ends;
-            let ends = if above { [left, right] } else { [right, left] };
-            let boundary = Boundary { ends, line: edge.line };
+            let ends =
+                if above == faces.faces[face as usize].outward { [left, right] } else { [right, left] };
             rims.of_fin[index] = rims.rims.len() as u32;
             rims.of_face[face as usize].push(rims.rims.len() as u32);
             rims.rims.push(Rim {
-                boundary,
+                ends,
+                line: edge.line,
                 face,
                 fin: index as u32,
                 next: NONE,
@@ -168,12 +170,14 @@ impl Rims {
 
     /// Finds how rims follow each other, and makes one of those that run straight on between the same two faces.
     fn straighten(&mut self, scene: &Scene, carriers: &Carriers, faces: &Faces) {
-        for (face, members) in faces.faces.iter().zip(&self.of_face) {
+        for (index, face) in faces.faces.iter().enumerate() {
             let Carrier { chart, lines, .. } = &carriers.carriers[face.carrier as usize];
-            let boundary: Vec<Boundary> =
-                members.iter().map(|&rim| self.rims[rim as usize].boundary).collect();
+            let boundary = self.boundary_in_chart(face, index);
+            let members = &self.of_face[index];
             for (&rim, next) in members.iter().zip(followers(chart, &scene.points, lines, &boundary)) {
-                self.rims[rim as usize].next = members[next as usize];
+                let (before, after) =
+                    if face.outward { (rim, members[next as usize]) } else { (members[next as usize], rim) };
+                self.rims[before as usize].next = after;
             }
         }
         let once = self.passed_once();
@@ -194,7 +198,7 @@ impl Rims {
             while runs_on[tail] {
                 tail = self.rims[tail].next as usize;
             }
-            self.rims[head].boundary.ends[1] = self.rims[tail].boundary.ends[1];
+            self.rims[head].ends[1] = self.rims[tail].ends[1];
             self.rims[head].twin = self.rims[tail].twin;
         }
         for members in &mut self.of_face {
@@ -202,10 +206,20 @@ impl Rims {
         }
     }
 
+    /// The rims of a face as the chart sees them, with the face on the left.
+    fn boundary_in_chart(&self, face: &Face, index: usize) -> Vec<Boundary> {
+        let rims = self.of_face[index].iter().map(|&rim| &self.rims[rim as usize]);
+        rims.map(|rim| {
+            let [from, to] = rim.ends;
+            Boundary { ends: if face.outward { [from, to] } else { [to, from] }, line: rim.line }
+        })
+        .collect()
+    }
+
     /// For each rim, whether its face passes the end of the rim only once.
     fn passed_once(&self) -> Vec<bool> {
         let mut ends: Vec<(u32, PointId, u32)> =
-            (0..).zip(&self.rims).map(|(i, rim)| (rim.face, rim.boundary.ends[1], i)).collect();
+            (0..).zip(&self.rims).map(|(i, rim)| (rim.face, rim.ends[1], i)).collect();
         ends.sort_unstable();
         let mut once = vec![false; self.rims.len()];
         for group in ends.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
@@ -228,7 +242,7 @@ impl Rims {
             return false;
         }
         let chart = &carriers.carriers[faces.faces[here.face as usize].carrier as usize].chart;
-        let ([from, middle], to) = (here.boundary.ends, next.boundary.ends[1]);
+        let ([from, middle], to) = (here.ends, next.ends[1]);
         chart.orientation(&scene.points, from, middle, to) == 0
             && chart.compare(&scene.points, from, middle) == chart.compare(&scene.points, middle, to)
     }
@@ -301,8 +315,7 @@ impl Surface {
     fn add_face(&mut self, scene: &Scene, carriers: &Carriers, faces: &Faces, rims: &Rims, face: usize) {
         let Face { carrier, outward, birth } = faces.faces[face];
         let Carrier { chart, lines, .. } = &carriers.carriers[carrier as usize];
-        let boundary: Vec<Boundary> =
-            rims.of_face[face].iter().map(|&rim| rims.rims[rim as usize].boundary).collect();
+        let boundary = rims.boundary_in_chart(&faces.faces[face], face);
         let mut rim_of: Vec<([PointId; 2], u32)> =
             boundary.iter().zip(&rims.of_face[face]).map(|(edge, &rim)| (edge.ends, rim)).collect();
         rim_of.sort_unstable();

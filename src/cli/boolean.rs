@@ -67,8 +67,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let combined = times.stage(terminal, "build", "combining", || boolean::evaluate(&tree, &operands));
     let solid = combined.map_err(|error| explain(&error, &sources))?.solid;
     times.stage(terminal, "write", "writing", || output::write(&outputs, solid.mesh()))?;
-    for place in outputs.iter().filter_map(Output::named) {
-        terminal.note(format_args!("{place}: {} triangles, {:.2} s", solid.triangles().len(), times.total()));
+    for name in outputs.iter().filter_map(Output::name) {
+        terminal.note(format_args!("{name}: {} triangles, {:.2} s", solid.triangles().len(), times.total()));
     }
     Ok(())
 }

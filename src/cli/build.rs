@@ -1,11 +1,11 @@
 use super::input::{Kind, Source};
-use super::model::Shape;
 use super::model::{self, Times};
 use super::output::{self, Output};
 use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
 use super::summary::{Form, Summary};
 use super::terminal::Terminal;
+use crate::csg::Shape;
 use crate::io::Format;
 use crate::mesh::{Measures, Solid};
 use clap::ValueHint;
@@ -35,7 +35,7 @@ pub(super) struct Args {
     /// Print measures and times to standard output
     #[arg(long, value_enum, value_name = "FORM")]
     summary: Option<Form>,
-    /// Fail when the result is not closed
+    /// Exit with 4 when a mesh that takes part, or the result, is not closed
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
@@ -58,7 +58,7 @@ impl Job {
             return Err(Stop::about(source, hint));
         }
         let outputs = output::plan(&args.output, args.format)?;
-        if args.summary.is_some() && outputs.iter().any(|output| output.named().is_none()) {
+        if args.summary.is_some() && outputs.iter().any(|output| output.name().is_none()) {
             return Err(Stop::Usage("-o - and --summary both want standard output".to_owned()));
         }
         Ok(Job { source, outputs, summary: args.summary, strict: args.strict })
@@ -70,7 +70,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let mut times = Times::default();
     let mut summary = Summary::default();
     summary.row("input", job.source.to_string());
-    match model::build(&job.source, &args.script, &mut times, terminal)? {
+    let built = model::build(&job.source, &args.script, job.strict, &mut times, terminal)?;
+    match built.shape {
         Shape::Solid(solid) => write_solid(&job, &solid, &mut times, &mut summary, terminal)?,
         Shape::Region(region) if job.outputs.is_empty() => drop(summary.region(&region)),
         Shape::Region(_) => {
@@ -79,7 +80,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
         }
     }
     let [warnings, echoes] = terminal.counts();
-    summary.row("warnings", warnings).row("echoes", echoes).row("seconds", times.rows());
+    summary.row("warnings", warnings).row("echoes", echoes);
+    summary.report(&built.report).row("seconds", times.rows());
     match job.summary {
         Some(form) => print(&summary.print(form)),
         None => Ok(()),
@@ -98,8 +100,8 @@ fn write_solid(
         return Err(Stop::NotClosed(format!("{}: the result is not closed", job.source)));
     }
     times.stage(terminal, "write", "writing", || output::write(&job.outputs, solid.mesh()))?;
-    for place in job.outputs.iter().filter_map(Output::named) {
-        terminal.note(format_args!("{place}: {}", in_short(&measures, times)));
+    for name in job.outputs.iter().filter_map(Output::name) {
+        terminal.note(format_args!("{name}: {}", in_short(&measures, times)));
     }
     summary.measures(&measures);
     Ok(())

@@ -18,9 +18,6 @@ pub(super) struct Args {
     /// The script; `-` reads it from standard input
     #[arg(value_name = "IN.scad", value_hint = ValueHint::FilePath)]
     input: PathBuf,
-    /// Fail on warnings too
-    #[arg(long)]
-    strict: bool,
     #[command(flatten)]
     script: ScriptArgs,
 }
@@ -32,8 +29,5 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     times.stage(terminal, "evaluate", "evaluating", || model::evaluate(&source, &args.script, terminal))?;
     let [warnings, _] = terminal.counts();
     terminal.note(format_args!("{source}: {warnings} warnings, {:.2} s", times.total()));
-    if args.strict && warnings > 0 {
-        return Err(Stop::about(source, format!("{warnings} warnings under --strict")));
-    }
     Ok(())
 }

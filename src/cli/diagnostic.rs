@@ -19,17 +19,9 @@ pub(super) fn render(message: &Message, style: Style) -> String {
 }
 
 /// A message about no place.
-pub(super) fn headline(severity: Severity, text: &str, style: Style) -> String {
-    let message = Message {
-        severity,
-        text: text.to_owned(),
-        at: None,
-        also: Vec::new(),
-        hints: Vec::new(),
-        trace: Vec::new(),
-        files: Default::default(),
-    };
-    render(&message, style)
+pub(super) fn placeless(severity: Severity, text: impl Into<String>) -> Message {
+    let (at, also, hints, trace, files) = Default::default();
+    Message { severity, text: text.into(), at, also, hints, trace, files }
 }
 
 /// `WARNING: text in file name, line n`, then a line for each call and hint.

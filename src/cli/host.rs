@@ -3,7 +3,7 @@ use super::stop::Stop;
 use super::terminal::Terminal;
 use crate::io::{self as formats, Format};
 use crate::mesh::Mesh;
-use crate::script::{Host, Loaded, Message, Severity};
+use crate::script::{Host, Loaded, Message};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -65,15 +65,10 @@ impl<'a> FileHost<'a> {
     fn load(&mut self, bytes: Vec<u8>, name: String, folder: PathBuf) -> Result<Loaded, String> {
         let (text, latin) = decode(bytes)?;
         if latin {
-            self.warn(format!("{name} is not UTF-8; it is read as Latin-1"));
+            self.terminal.warn(format!("{name} is not UTF-8; it is read as Latin-1"));
         }
         self.folders.insert(name.clone(), folder);
         Ok(Loaded { name, text })
-    }
-
-    fn warn(&self, text: String) {
-        let (at, also, hints, trace, files) = Default::default();
-        self.terminal.say(&Message { severity: Severity::Warning, text, at, also, hints, trace, files });
     }
 
     /// The one path of the file `name` as the script `from` knows it.

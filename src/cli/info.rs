@@ -1,11 +1,11 @@
 use super::build::print;
 use super::input::{Kind, Source};
-use super::model::Shape;
 use super::model::{self, Times};
 use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
 use super::summary::{Form, Summary};
 use super::terminal::Terminal;
+use crate::csg::Shape;
 use crate::io::Format;
 use crate::mesh::{Defects, Measures, Mesh};
 use clap::ValueHint;
@@ -42,10 +42,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     summary.row("input", source.to_string());
     match kind {
         Kind::Mesh(format) => describe(&source.mesh(format)?, &mut summary),
-        Kind::Script => match model::build(&source, &args.script, &mut Times::default(), terminal)? {
-            Shape::Solid(solid) => describe(solid.mesh(), &mut summary),
-            Shape::Region(region) => drop(summary.region(&region)),
-        },
+        Kind::Script => {
+            match model::build(&source, &args.script, false, &mut Times::default(), terminal)?.shape {
+                Shape::Solid(solid) => describe(solid.mesh(), &mut summary),
+                Shape::Region(region) => drop(summary.region(&region)),
+            }
+        }
     }
     print(&summary.print(if args.json { Form::Json } else { Form::Text }))
 }

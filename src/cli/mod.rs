@@ -5,6 +5,7 @@
 
 mod boolean;
 mod build;
+mod builtins;
 mod check;
 mod diagnostic;
 mod host;
@@ -50,6 +51,7 @@ enum Command {
     Info(info::Args),
     Render(Box<render::Args>),
     Boolean(boolean::Args),
+    Builtins(builtins::Args),
 }
 
 impl Command {
@@ -60,6 +62,7 @@ impl Command {
             Command::Info(args) => info::run(args, terminal),
             Command::Render(args) => render::run(args, terminal),
             Command::Boolean(args) => boolean::run(args, terminal),
+            Command::Builtins(args) => builtins::run(args),
         }
     }
 }

@@ -4,8 +4,8 @@ use super::input::Source;
 use super::settings::ScriptArgs;
 use super::stop::Stop;
 use super::terminal::Terminal;
-use crate::mesh::Solid;
-use crate::polygon::Region;
+use crate::csg::{self, BuildError, Built, Progress};
+use crate::script::{self, Evaluated, Failure};
 use serde_json::{Map, Value};
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ impl Times {
         &mut self,
         terminal: &Terminal,
         name: &str,
-        doing: &'static str,
+        doing: &str,
         work: impl FnOnce() -> R,
     ) -> R {
         terminal.stage(doing);
@@ -42,29 +42,46 @@ impl Times {
     }
 }
 
-/// What a script makes.
-pub(super) enum Shape {
-    /// A plane region.
-    Region(Region),
-    /// A solid.
-    Solid(Solid),
-}
-
 /// Evaluates the script in `source`.
-pub(super) fn evaluate(source: &Source, args: &ScriptArgs, terminal: &Terminal) -> Result<(), Stop> {
+pub(super) fn evaluate(source: &Source, args: &ScriptArgs, terminal: &Terminal) -> Result<Evaluated, Stop> {
     let mut host = args.host(source, terminal)?;
-    let _ = (host.main(source)?, args.options());
-    Err(Stop::about(source, "scripts cannot be evaluated yet"))
+    let main = host.main(source)?;
+    script::evaluate(main, &mut host, &args.options()).map_err(|failure| match failure {
+        Failure::Error => Stop::Explained,
+        Failure::Limit => Stop::Limit(None),
+    })
 }
 
-/// Evaluates the script in `source` and builds its shape.
+/// Evaluates the script in `source` and builds its shape. When `strict`, a mesh in it that is not closed is
+/// [`Stop::NotClosed`].
 pub(super) fn build(
     source: &Source,
     args: &ScriptArgs,
+    strict: bool,
     times: &mut Times,
     terminal: &Terminal,
-) -> Result<Shape, Stop> {
+) -> Result<Built, Stop> {
     let _watchdog = args.watchdog();
-    times.stage(terminal, "evaluate", "evaluating", || evaluate(source, args, terminal))?;
-    Ok(Shape::Solid(Solid::default()))
+    let evaluated = times.stage(terminal, "evaluate", "evaluating", || evaluate(source, args, terminal))?;
+    let mut show = |progress: Progress| {
+        terminal.stage(format!("building, {} of {} steps", progress.done, progress.total));
+    };
+    let built = times.stage(terminal, "build", "building", || {
+        csg::build_with_progress(&evaluated.recipe, &args.build_options(), &mut show)
+    });
+    let built = built.map_err(|error| explain(source, &error, strict))?;
+    built.report.notes.iter().for_each(|note| terminal.warn(note.to_string()));
+    Ok(built)
+}
+
+fn explain(source: &Source, error: &BuildError, strict: bool) -> Stop {
+    let text = format!("{source}: {error}");
+    match error {
+        BuildError::Limit { .. } | BuildError::TooDeep { .. } => Stop::Limit(Some(text)),
+        BuildError::NotClosed { .. } if strict => Stop::NotClosed(text),
+        BuildError::NotClosed { .. }
+        | BuildError::NonFinite { .. }
+        | BuildError::Sweep(_)
+        | BuildError::Hull(_) => Stop::Error(text),
+    }
 }

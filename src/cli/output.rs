@@ -24,6 +24,8 @@ pub(super) enum Place {
 /// Where a mesh goes, and how it is written there.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Output {
+    /// As typed.
+    name: String,
     place: Place,
     format: Format,
 }
@@ -33,9 +35,10 @@ pub(super) struct Output {
 pub(super) fn plan(typed: &[PathBuf], format: Option<Format>) -> Result<Vec<Output>, Stop> {
     let mut outputs: Vec<Output> = Vec::with_capacity(typed.len());
     for path in typed {
-        let output = Output { format: chosen_format(path, format)?, place: Place::typed(path)? };
+        let name = path.display().to_string();
+        let output = Output { format: chosen_format(path, format)?, place: Place::typed(path)?, name };
         if outputs.iter().any(|other| other.place == output.place) {
-            return Err(Stop::Usage(format!("{} is named twice by -o", output.place)));
+            return Err(Stop::Usage(format!("{} is named twice by -o", output.name)));
         }
         outputs.push(output);
     }
@@ -46,10 +49,10 @@ pub(super) fn plan(typed: &[PathBuf], format: Option<Format>) -> Result<Vec<Outp
 /// in the renaming itself, which names the file.
 pub(super) fn write(outputs: &[Output], mesh: &Mesh) -> Result<(), Stop> {
     let mut pending = Vec::new();
-    for Output { place, format } in outputs {
+    for Output { name, place, format } in outputs {
         if let Place::File(path) = place {
             let written = Pending::write(path, |out| write_mesh(*format, mesh, out));
-            pending.push(written.map_err(|error| Stop::about(place, error))?);
+            pending.push(written.map_err(|error| Stop::about(name, error))?);
         }
     }
     for file in pending {
@@ -60,9 +63,9 @@ pub(super) fn write(outputs: &[Output], mesh: &Mesh) -> Result<(), Stop> {
 }
 
 impl Output {
-    /// Its place, when that has a name.
-    pub(super) fn named(&self) -> Option<&Place> {
-        (self.place != Place::Stdout).then_some(&self.place)
+    /// Its name as typed; none for standard output.
+    pub(super) fn name(&self) -> Option<&str> {
+        (self.place != Place::Stdout).then_some(&self.name)
     }
 }
 

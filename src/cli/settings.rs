@@ -3,6 +3,7 @@ use super::input;
 use super::stop::Stop;
 use super::terminal::{Style, Terminal};
 use super::watchdog::Watchdog;
+use crate::csg;
 use crate::io::Format;
 use crate::par;
 use crate::script;
@@ -78,6 +79,9 @@ struct Limits {
     /// Most memory for the script's values, in MiB
     #[arg(long, value_name = "MIB", default_value_t = script::Options::default().max_bytes >> 20)]
     limit_memory: u64,
+    /// Most triangles of all shapes that take part, and of the result
+    #[arg(long, value_name = "N", default_value_t = csg::BuildOptions::default().max_triangles)]
+    limit_triangles: u64,
     /// Most time for evaluating and building, in seconds; none by default
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     limit_seconds: Option<Duration>,
@@ -93,6 +97,11 @@ impl ScriptArgs {
             max_bytes: self.limits.limit_memory.saturating_mul(1 << 20),
             ..script::Options::default()
         }
+    }
+
+    /// The builder's options.
+    pub(super) fn build_options(&self) -> csg::BuildOptions {
+        csg::BuildOptions { max_triangles: self.limits.limit_triangles }
     }
 
     /// The files that the script `main` may read.

@@ -1,5 +1,6 @@
 //! Measures of what was made, for people and for programs.
 
+use crate::csg::Report;
 use crate::math::{Aabb, Vec2};
 use crate::mesh::{Defects, Measures};
 use crate::polygon::Region;
@@ -50,6 +51,12 @@ impl Summary {
         let counts: Map<String, Value> =
             defects.rows().iter().map(|&(name, count)| (name.to_owned(), count.into())).collect();
         self.row("defects", counts)
+    }
+
+    /// Adds how the build went.
+    pub(super) fn report(&mut self, report: &Report) -> &mut Summary {
+        let Report { made, booleans, reused, skipped, notes: _ } = report;
+        self.row("steps", json!({ "made": made, "booleans": booleans, "reused": reused, "skipped": skipped }))
     }
 
     /// The whole as text that ends with a line end.

@@ -27,7 +27,7 @@ pub(super) struct Terminal {
     style: Style,
     quiet: bool,
     /// What is being done, for the spinner's thread.
-    stage: Arc<Mutex<&'static str>>,
+    stage: Arc<Mutex<String>>,
     spinner: ProgressBar,
     said: RefCell<Said>,
 }
@@ -43,17 +43,22 @@ struct Said {
 
 impl Terminal {
     pub(super) fn new(style: Style, quiet: bool, is_terminal: bool) -> Terminal {
-        let stage = Arc::new(Mutex::new("working"));
+        let stage = Arc::new(Mutex::new(String::new()));
         let hidden = quiet || !is_terminal;
         let spinner = if hidden { ProgressBar::hidden() } else { spinner(Arc::clone(&stage)) };
         Terminal { style, quiet, stage, spinner, said: RefCell::default() }
     }
 
     /// Shows what is being done, once it takes long.
-    pub(super) fn stage(&self, name: &'static str) {
+    pub(super) fn stage(&self, name: impl Into<String>) {
         if let Ok(mut stage) = self.stage.lock() {
-            *stage = name;
+            *stage = name.into();
         }
+    }
+
+    /// Takes a warning that is about no place of a script.
+    pub(super) fn warn(&self, text: impl Into<String>) {
+        self.say(&diagnostic::placeless(Severity::Warning, text));
     }
 
     /// Prints what a script says.
@@ -104,7 +109,7 @@ impl Terminal {
     /// Prints why we stop, unless that is known.
     pub(super) fn explain(&self, stop: &Stop) {
         if let Some(text) = stop.text() {
-            self.print(diagnostic::headline(Severity::Error, text, self.style).trim_end());
+            self.say(&diagnostic::placeless(Severity::Error, text));
         }
     }
 
@@ -121,7 +126,7 @@ pub(super) fn explain_plainly(stop: &Stop) {
 }
 
 /// A line with what is being done and for how long; blank while that is short.
-fn spinner(stage: Arc<Mutex<&'static str>>) -> ProgressBar {
+fn spinner(stage: Arc<Mutex<String>>) -> ProgressBar {
     let line = move |state: &ProgressState, out: &mut dyn fmt::Write| {
         let elapsed = state.elapsed();
         if let Ok(stage) = stage.lock()
