@@ -4,8 +4,30 @@
 //! (the texts of other files, meshes) it asks of a [`Host`], and what it has to say on the way (echo, warnings, errors)
 //! it hands to the host as a [`Message`].
 
+mod ast;
+mod budget;
+mod builtins;
+mod degrees;
 mod diagnostic;
+mod eval;
+mod extent;
+mod facets;
+mod format;
+mod heap;
+mod lexer;
+mod names;
+mod operators;
+mod parser;
+mod report;
+mod resolve;
+mod source;
+mod stack;
+mod suggest;
+#[cfg(test)]
+mod tests;
+mod value;
 
+pub use builtins::{Builtin, BuiltinKind, builtins};
 pub use diagnostic::{FileId, Frame, Label, Message, Severity, Span};
 
 use crate::csg::Csg;
@@ -85,4 +107,24 @@ pub enum Failure {
     Error,
     /// A limit of [`Options`] was reached.
     Limit,
+}
+
+/// Evaluates the script `main` and all that it includes and uses.
+///
+/// # Errors
+/// When the script is wrong or takes more than `options` allow; the host has been told why, and where.
+pub fn evaluate(main: Loaded, host: &mut dyn Host, options: &Options) -> Result<Evaluated, Failure> {
+    let source::Source { mut program, files, mut complaints } = source::load(main, &options.define, host);
+    let files = Arc::new(files);
+    let broken = complaints.iter().any(|complaint| complaint.severity == Severity::Error);
+    let suggestions =
+        if broken { Default::default() } else { resolve::resolve(&mut program, &mut complaints) };
+    let failed = complaints.iter().any(|complaint| complaint.severity == Severity::Error);
+    for complaint in complaints {
+        host.say(complaint.into_message(Vec::new(), files.clone()));
+    }
+    if failed {
+        return Err(Failure::Error);
+    }
+    eval::run(&program, &suggestions, files, host, options)
 }

@@ -1,0 +1,54 @@
+use super::build::print;
+use super::stop::Stop;
+use crate::script::{Builtin, BuiltinKind, builtins};
+
+const EXAMPLES: &str = "\
+Examples:
+  ogee builtins
+  ogee builtins rotate_extrude";
+
+/// List what the script language brings along
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Show only these
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Stop> {
+    let known = |name: &&String| builtins().any(|builtin| builtin.name == **name);
+    if let Some(unknown) = args.names.iter().find(|name| !known(name)) {
+        return Err(Stop::Error(format!("there is no builtin `{unknown}`; `ogee builtins` lists them")));
+    }
+    let asked =
+        |builtin: &&Builtin| args.names.is_empty() || args.names.iter().any(|name| name == builtin.name);
+    let mut rows: Vec<&Builtin> = builtins().filter(asked).collect();
+    rows.sort_by_key(|builtin| (builtin.kind, builtin.name));
+    let mut text = String::new();
+    for group in rows.chunk_by(|a, b| a.kind == b.kind) {
+        text += title(group[0].kind);
+        for builtin in group {
+            text += &format!("  {}\n      {}\n", usage(builtin), builtin.help);
+        }
+    }
+    print(&text)
+}
+
+fn title(kind: BuiltinKind) -> &'static str {
+    match kind {
+        BuiltinKind::Module => "Modules\n",
+        BuiltinKind::Function => "Functions\n",
+        BuiltinKind::Variable => "Variables\n",
+        BuiltinKind::Missing => "Not there yet\n",
+    }
+}
+
+fn usage(builtin: &Builtin) -> String {
+    match builtin.kind {
+        BuiltinKind::Variable | BuiltinKind::Missing => builtin.name.to_owned(),
+        BuiltinKind::Module | BuiltinKind::Function => {
+            format!("{}({})", builtin.name, builtin.parameters.join(", "))
+        }
+    }
+}
