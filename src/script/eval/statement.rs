@@ -264,6 +264,12 @@ impl<'p> Machine<'p> {
             }
         }
         let outer = std::mem::replace(&mut self.unit, children.unit);
+        let mark = self.specials.mark();
+        // Where the children were written, $children is the number of those of the module around them.
+        let around = children.context.children.as_ref().map_or(0, |outer| outer.block.statements.len());
+        if let Some(name) = self.specials.known().children {
+            self.specials.set(name, Value::Number(around as f64));
+        }
         let made = self.chosen(children.block, &children.context, |machine, context| {
             let mut all = Made::default();
             for id in chosen {
@@ -273,6 +279,7 @@ impl<'p> Machine<'p> {
             }
             Ok(all)
         })?;
+        self.specials.restore(mark);
         self.unit = outer;
         Ok(made)
     }
