@@ -75,18 +75,48 @@ pub(super) enum Expr {
     Bool(bool),
     Number(f64),
     Text(Rc<Text>),
-    Variable { name: Symbol, place: Place },
+    Variable {
+        name: Symbol,
+        place: Place,
+    },
     List(Vec<ExprId>),
-    Range { begin: ExprId, step: Option<ExprId>, end: ExprId },
-    Unary { op: UnaryOp, operand: ExprId },
-    Binary { op: BinaryOp, left: ExprId, right: ExprId },
-    Conditional { condition: ExprId, then: ExprId, otherwise: ExprId },
-    Index { list: ExprId, index: ExprId },
-    Member { object: ExprId, name: Symbol },
+    Range {
+        begin: ExprId,
+        step: Option<ExprId>,
+        end: ExprId,
+    },
+    Unary {
+        op: UnaryOp,
+        operand: ExprId,
+    },
+    Binary {
+        op: BinaryOp,
+        left: ExprId,
+        right: ExprId,
+    },
+    Conditional {
+        condition: ExprId,
+        then: ExprId,
+        otherwise: ExprId,
+    },
+    Index {
+        list: ExprId,
+        index: ExprId,
+    },
+    Member {
+        object: ExprId,
+        name: Symbol,
+    },
     Call(Box<Call>),
     Let(Box<Let>),
-    Assert { arguments: Vec<Argument>, body: Option<ExprId> },
-    Echo { arguments: Vec<Argument>, body: Option<ExprId> },
+    Assert {
+        arguments: Vec<Argument>,
+        body: Option<ExprId>,
+    },
+    Echo {
+        arguments: Vec<Argument>,
+        body: Option<ExprId>,
+    },
     Function(FunctionId),
     /// All values of a list.
     Each(ExprId),
@@ -95,7 +125,11 @@ pub(super) enum Expr {
     /// `for (init; condition; update) body`.
     While(Box<While>),
     /// An element that may be missing.
-    If { condition: ExprId, then: ExprId, otherwise: Option<ExprId> },
+    If {
+        condition: ExprId,
+        then: ExprId,
+        otherwise: Option<ExprId>,
+    },
 }
 
 impl Expr {

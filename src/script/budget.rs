@@ -67,7 +67,10 @@ impl Budget {
     pub(super) fn reserve(&self, bytes: usize) -> Result<(), Fault> {
         let alive = heap::alive().saturating_sub(self.base).saturating_add(bytes);
         if alive as u64 > self.most_bytes {
-            return Err(Fault::Limit(format!("the values of the script take more than {} bytes", self.most_bytes)));
+            return Err(Fault::Limit(format!(
+                "the values of the script take more than {} bytes",
+                self.most_bytes
+            )));
         }
         Ok(())
     }

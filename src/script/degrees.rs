@@ -82,7 +82,10 @@ mod tests {
             let at = |degrees: f64| degrees + 360.0 * f64::from(turn);
             assert_eq!([sin(at(0.0)), sin(at(90.0)), sin(at(180.0)), sin(at(270.0))], [0.0, 1.0, 0.0, -1.0]);
             assert_eq!([cos(at(0.0)), cos(at(90.0)), cos(at(180.0)), cos(at(270.0))], [1.0, 0.0, -1.0, 0.0]);
-            assert_eq!([sin(at(30.0)), sin(at(210.0)), cos(at(60.0)), cos(at(240.0))], [0.5, -0.5, 0.5, -0.5]);
+            assert_eq!(
+                [sin(at(30.0)), sin(at(210.0)), cos(at(60.0)), cos(at(240.0))],
+                [0.5, -0.5, 0.5, -0.5]
+            );
             assert_eq!([tan(at(45.0)), tan(at(135.0))], [1.0, -1.0]);
         }
     }

@@ -16,7 +16,8 @@ pub(super) fn farthest(recipe: &Csg, measure: &dyn Fn(Vec2) -> f64) -> f64 {
 
 fn reach(recipe: &Csg, map: Affine3, measure: &dyn Fn(Vec2) -> f64) -> f64 {
     let inner = |child: &Csg| with_room(|| reach(child, map, measure));
-    let largest = |children: &[std::sync::Arc<Csg>]| children.iter().map(|child| inner(child)).fold(0.0, f64::max);
+    let largest =
+        |children: &[std::sync::Arc<Csg>]| children.iter().map(|child| inner(child)).fold(0.0, f64::max);
     match recipe {
         Csg::Flat(flat) => reach_of_leaf(flat, map, measure),
         Csg::Transform { map: own, child } => with_room(|| reach(child, map * *own, measure)),
@@ -34,9 +35,10 @@ fn reach(recipe: &Csg, map: Affine3, measure: &dyn Fn(Vec2) -> f64) -> f64 {
 fn reach_of_leaf(flat: &Flat, map: Affine3, measure: &dyn Fn(Vec2) -> f64) -> f64 {
     let at = |p: Vec2| measure(map.transform_point3(Vec3::new(p.x, p.y, 0.0)).truncate());
     match flat {
-        Flat::Rectangle { min, max } => {
-            [*min, *max, Vec2::new(min.x, max.y), Vec2::new(max.x, min.y)].map(at).into_iter().fold(0.0, f64::max)
-        }
+        Flat::Rectangle { min, max } => [*min, *max, Vec2::new(min.x, max.y), Vec2::new(max.x, min.y)]
+            .map(at)
+            .into_iter()
+            .fold(0.0, f64::max),
         Flat::Circle { radius, fragments } => {
             let vertex = |index: u32| {
                 let angle = 360.0 * f64::from(index) / f64::from(*fragments);

@@ -6,7 +6,12 @@ use super::names::Symbol;
 use super::value::Value;
 
 /// Appends a value as it stands in a list or an `echo`: texts in quotes (and nothing in them escaped).
-pub(super) fn value(value: &Value, program: &Program, budget: &mut Budget, out: &mut String) -> Result<(), Fault> {
+pub(super) fn value(
+    value: &Value,
+    program: &Program,
+    budget: &mut Budget,
+    out: &mut String,
+) -> Result<(), Fault> {
     match value {
         Value::Undef => out.push_str("undef"),
         Value::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
@@ -53,7 +58,11 @@ pub(super) fn number(value: f64) -> String {
     }
     let sign = if value < 0.0 { "-" } else { "" };
     let (digits, exponent) = six_digits(value.abs());
-    let body = if (-5..=5).contains(&exponent) { written_out(&digits, exponent) } else { scientific(&digits, exponent) };
+    let body = if (-5..=5).contains(&exponent) {
+        written_out(&digits, exponent)
+    } else {
+        scientific(&digits, exponent)
+    };
     format!("{sign}{body}")
 }
 
@@ -187,35 +196,57 @@ impl Printer<'_> {
             Expr::Undef => self.push("undef"),
             Expr::Bool(value) => self.push(if *value { "true" } else { "false" }),
             Expr::Number(value) => self.push(&number(*value)),
-            Expr::Text(text) => self.parts(&[T("\""), T(text.as_str()), T("\"")])?,
+            Expr::Text(text) => {
+                self.parts(&[T("\""), T(text.as_str()), T("\"")])?;
+            }
             Expr::Variable { name, .. } => self.name(*name),
             Expr::List(elements) => {
                 self.push("[");
                 self.joined(elements, |printer, &element| printer.expr(element))?;
                 self.push("]");
             }
-            Expr::Range { begin, step: None, end } => self.parts(&[T("["), E(*begin), T(" : "), E(*end), T("]")])?,
+            Expr::Range { begin, step: None, end } => {
+                self.parts(&[T("["), E(*begin), T(" : "), E(*end), T("]")])?;
+            }
             Expr::Range { begin, step: Some(step), end } => {
                 self.parts(&[T("["), E(*begin), T(" : "), E(*step), T(" : "), E(*end), T("]")])?;
             }
-            Expr::Unary { op, operand } => self.parts(&[T(op.text()), Operand(*operand)])?,
+            Expr::Unary { op, operand } => {
+                self.parts(&[T(op.text()), Operand(*operand)])?;
+            }
             Expr::Binary { op, left, right } => {
                 let left = if *op == BinaryOp::Power { Base(*left) } else { Operand(*left) };
                 self.parts(&[T("("), left, T(" "), T(op.text()), T(" "), Operand(*right), T(")")])?;
             }
             Expr::Conditional { condition, then, otherwise } => {
-                self.parts(&[T("("), Operand(*condition), T(" ? "), E(*then), T(" : "), E(*otherwise), T(")")])?;
+                self.parts(&[
+                    T("("),
+                    Operand(*condition),
+                    T(" ? "),
+                    E(*then),
+                    T(" : "),
+                    E(*otherwise),
+                    T(")"),
+                ])?;
             }
-            Expr::Index { list, index } => self.parts(&[Base(*list), T("["), E(*index), T("]")])?,
-            Expr::Member { object, name } => self.parts(&[Base(*object), T("."), T(program.names.text(*name))])?,
+            Expr::Index { list, index } => {
+                self.parts(&[Base(*list), T("["), E(*index), T("]")])?;
+            }
+            Expr::Member { object, name } => {
+                self.parts(&[Base(*object), T("."), T(program.names.text(*name))])?;
+            }
             Expr::Call(call) => {
                 match &call.callee {
                     Callee::Name { name, .. } => self.name(*name),
-                    Callee::Value(callee) => self.parts(&[T("("), E(*callee), T(")")])?,
+                    Callee::Value(callee) => {
+                        self.parts(&[T("("), E(*callee), T(")")])?;
+                    }
                 }
                 self.parts(&[T("("), Arguments(&call.arguments), T(")")])?;
             }
-            Expr::Let(inner) => self.parts(&[T("let("), Bindings(&inner.bindings), T(") "), E(inner.body)])?,
+            Expr::Let(inner) => {
+                self.parts(&[T("let("), Bindings(&inner.bindings), T(") "), E(inner.body)])?;
+            }
             Expr::Assert { arguments, body } | Expr::Echo { arguments, body } => {
                 let word = if matches!(program[id], Expr::Assert { .. }) { "assert(" } else { "echo(" };
                 self.parts(&[T(word), Arguments(arguments), T(")")])?;
@@ -224,8 +255,12 @@ impl Printer<'_> {
                 }
             }
             Expr::Function(function) => self.function(*function)?,
-            Expr::Each(list) => self.parts(&[T("each ("), E(*list), T(")")])?,
-            Expr::For(inner) => self.parts(&[T("for("), Bindings(&inner.bindings), T(") "), E(inner.body)])?,
+            Expr::Each(list) => {
+                self.parts(&[T("each ("), E(*list), T(")")])?;
+            }
+            Expr::For(inner) => {
+                self.parts(&[T("for("), Bindings(&inner.bindings), T(") "), E(inner.body)])?;
+            }
             Expr::While(inner) => self.parts(&[
                 T("for("),
                 Bindings(&inner.init),

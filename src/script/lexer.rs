@@ -69,12 +69,17 @@ impl Keyword {
 
 /// Marks, longer ones before their beginnings.
 const MARKS: &[&str] = &[
-    "<=", ">=", "==", "!=", "&&", "||", "<<", ">>", "+", "-", "*", "/", "%", "^", "<", ">", "!", "&", "|", "~",
-    "=", "?", ":", ";", ",", ".", "(", ")", "[", "]", "{", "}", "#",
+    "<=", ">=", "==", "!=", "&&", "||", "<<", ">>", "+", "-", "*", "/", "%", "^", "<", ">", "!", "&", "|",
+    "~", "=", "?", ":", ";", ",", ".", "(", ")", "[", "]", "{", "}", "#",
 ];
 
 /// The tokens of `text`, the last of them [`TokenKind::End`]. What is no token is skipped with a complaint.
-pub(super) fn lex(text: &str, file: FileId, names: &mut Names, complaints: &mut Vec<Complaint>) -> Vec<Token> {
+pub(super) fn lex(
+    text: &str,
+    file: FileId,
+    names: &mut Names,
+    complaints: &mut Vec<Complaint>,
+) -> Vec<Token> {
     let mut lexer = Lexer { text, at: 0, file, names, complaints, tokens: Vec::new() };
     while lexer.at < text.len() {
         lexer.next();
@@ -156,7 +161,8 @@ impl Lexer<'_> {
         let hexadecimal = rest.starts_with("0x") || rest.starts_with("0X");
         if hexadecimal && word > 2 && rest[2..word].bytes().all(|b| b.is_ascii_hexdigit()) {
             let digits = rest[2..word].bytes();
-            let value = digits.fold(0.0, |sum, b| sum * 16.0 + f64::from((b as char).to_digit(16).unwrap_or(0)));
+            let value =
+                digits.fold(0.0, |sum, b| sum * 16.0 + f64::from((b as char).to_digit(16).unwrap_or(0)));
             self.at += word;
             self.push(TokenKind::Number(value), start);
         } else if number > 0 && number >= word {
@@ -171,10 +177,10 @@ impl Lexer<'_> {
 
     fn word(&mut self, start: usize) {
         let word = &self.text[start..self.at];
-        if word == "include" || word == "use" {
-            if let Some(kind) = self.path(word == "include") {
-                return self.push(kind, start);
-            }
+        if (word == "include" || word == "use")
+            && let Some(kind) = self.path(word == "include")
+        {
+            return self.push(kind, start);
         }
         let kind = match KEYWORDS.iter().find(|(text, _)| *text == word) {
             Some((_, keyword)) => TokenKind::Keyword(*keyword),
@@ -249,7 +255,9 @@ impl Lexer<'_> {
                 // As in OpenSCAD, where a character of code 0 would end the string.
                 value.push(if c == '\0' { ' ' } else { c });
             }
-            None => self.complain(start, format!("this escape needs {digits} hexadecimal digits of a character")),
+            None => {
+                self.complain(start, format!("this escape needs {digits} hexadecimal digits of a character"));
+            }
         }
     }
 }

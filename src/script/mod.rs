@@ -117,7 +117,8 @@ pub fn evaluate(main: Loaded, host: &mut dyn Host, options: &Options) -> Result<
     let source::Source { mut program, files, mut complaints } = source::load(main, &options.define, host);
     let files = Arc::new(files);
     let broken = complaints.iter().any(|complaint| complaint.severity == Severity::Error);
-    let suggestions = if broken { Default::default() } else { resolve::resolve(&mut program, &mut complaints) };
+    let suggestions =
+        if broken { Default::default() } else { resolve::resolve(&mut program, &mut complaints) };
     let failed = complaints.iter().any(|complaint| complaint.severity == Severity::Error);
     for complaint in complaints {
         host.say(complaint.into_message(Vec::new(), files.clone()));

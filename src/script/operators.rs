@@ -14,7 +14,9 @@ pub(super) fn unary(op: UnaryOp, operand: &Value, budget: &mut Budget) -> Outcom
         (UnaryOp::Minus, Value::Number(value)) => Ok(Value::Number(-value)),
         (UnaryOp::Minus, Value::List(list)) => each(list, budget, |value, budget| unary(op, value, budget)),
         (UnaryOp::BitNot, Value::Number(value)) => Ok(Value::Number(!(*value as i64) as f64)),
-        (UnaryOp::Minus | UnaryOp::BitNot, value) => undefined(format!("{}{} is undefined", op.text(), value.kind())),
+        (UnaryOp::Minus | UnaryOp::BitNot, value) => {
+            undefined(format!("{}{} is undefined", op.text(), value.kind()))
+        }
     }
 }
 
@@ -139,7 +141,9 @@ fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
             if let (Some(a), Some(b)) = (a.numbers(), b.numbers()) {
                 return Ok(Value::from_numbers(a.iter().zip(b).map(|(&a, &b)| of_numbers(a, b)).collect()));
             }
-            budget.deeper(|budget| a.iter().zip(b.iter()).map(|(a, b)| defined(sum(op, &a, &b, budget))).collect())
+            budget.deeper(|budget| {
+                a.iter().zip(b.iter()).map(|(a, b)| defined(sum(op, &a, &b, budget))).collect()
+            })
         }
         _ => mismatch(op, a, b),
     }
@@ -148,8 +152,12 @@ fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
 fn product(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a * b)),
-        (Value::Number(_), Value::List(list)) => each(list, budget, |value, budget| product(a, value, budget)),
-        (Value::List(list), Value::Number(_)) => each(list, budget, |value, budget| product(value, b, budget)),
+        (Value::Number(_), Value::List(list)) => {
+            each(list, budget, |value, budget| product(a, value, budget))
+        }
+        (Value::List(list), Value::Number(_)) => {
+            each(list, budget, |value, budget| product(value, b, budget))
+        }
         (Value::List(a), Value::List(b)) => product_of_lists(a, b, budget),
         _ => mismatch(BinaryOp::Multiply, a, b),
     }
@@ -179,7 +187,9 @@ fn product_of_lists(a: &List, b: &List, budget: &mut Budget) -> Outcome {
 fn rows(matrix: &List) -> Result<Vec<List>, Fault> {
     let row = |value: Value| match value {
         Value::List(row) if row.numbers().is_some() => Ok(row),
-        value => undefined(format!("in a product of lists, {} stands where a row of numbers should", value.kind())),
+        value => {
+            undefined(format!("in a product of lists, {} stands where a row of numbers should", value.kind()))
+        }
     };
     matrix.iter().map(row).collect()
 }
@@ -200,7 +210,11 @@ fn dot(a: &[f64], b: &[f64]) -> Outcome {
 fn combination(weights: &[f64], rows: &[List]) -> Outcome {
     let width = rows.first().map_or(0, List::len);
     if weights.len() != rows.len() || rows.iter().any(|row| row.len() != width) {
-        return undefined(format!("{} numbers times a matrix of {} rows is undefined", weights.len(), rows.len()));
+        return undefined(format!(
+            "{} numbers times a matrix of {} rows is undefined",
+            weights.len(),
+            rows.len()
+        ));
     }
     let mut sum = vec![0.0; width];
     for (weight, row) in weights.iter().zip(rows) {
@@ -214,8 +228,12 @@ fn combination(weights: &[f64], rows: &[List]) -> Outcome {
 fn quotient(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a / b)),
-        (Value::List(list), Value::Number(_)) => each(list, budget, |value, budget| quotient(value, b, budget)),
-        (Value::Number(_), Value::List(list)) => each(list, budget, |value, budget| quotient(a, value, budget)),
+        (Value::List(list), Value::Number(_)) => {
+            each(list, budget, |value, budget| quotient(value, b, budget))
+        }
+        (Value::Number(_), Value::List(list)) => {
+            each(list, budget, |value, budget| quotient(a, value, budget))
+        }
         _ => mismatch(BinaryOp::Divide, a, b),
     }
 }

@@ -5,8 +5,8 @@
 //! ([`Place::FirstOf`]). Function values and bodies of named functions run later, and see whatever is there by then.
 
 use super::ast::{
-    Argument, Binding, Block, Call, Callee, Expr, ExprId, FrameSize, Function, FunctionId, Home, Module, ModuleId,
-    Parameter, Place, Program, Room, Slot, Statement, StatementId, StatementKind, Target, UnitId,
+    Argument, Binding, Block, Call, Callee, Expr, ExprId, FrameSize, Function, FunctionId, Home, Module,
+    ModuleId, Parameter, Place, Program, Room, Slot, Statement, StatementId, StatementKind, Target, UnitId,
 };
 use super::builtins;
 use super::names::Symbol;
@@ -264,7 +264,8 @@ impl Resolver<'_> {
             match binding.name {
                 None => self.expr(binding.value),
                 Some(name) => {
-                    let known = self.frame().scopes.last().and_then(|scope| scope.variables.get(&name)).is_some();
+                    let known =
+                        self.frame().scopes.last().and_then(|scope| scope.variables.get(&name)).is_some();
                     if !known {
                         self.declare(name, State::Opening);
                     }
@@ -360,7 +361,8 @@ impl Resolver<'_> {
             places.push(Place::Pi);
         }
         if places.is_empty() && self.suggestions.variables.len() < MOST_SUGGESTIONS {
-            let known = self.frames.iter().flat_map(|frame| &frame.scopes).flat_map(|scope| scope.variables.keys());
+            let known =
+                self.frames.iter().flat_map(|frame| &frame.scopes).flat_map(|scope| scope.variables.keys());
             let hint = self.suggest(name, known.copied().collect(), builtins::constants());
             self.suggestions.variables.insert(name, hint);
         }
@@ -444,7 +446,12 @@ impl Resolver<'_> {
         self.frames.iter().flat_map(|frame| &frame.scopes).chain(uses).flat_map(names).collect()
     }
 
-    fn suggest(&self, name: Symbol, known: Vec<Symbol>, builtins: impl Iterator<Item = &'static str>) -> String {
+    fn suggest(
+        &self,
+        name: Symbol,
+        known: Vec<Symbol>,
+        builtins: impl Iterator<Item = &'static str>,
+    ) -> String {
         let names = &self.program.names;
         let mut candidates: Vec<&str> = known.into_iter().map(|symbol| names.text(symbol)).collect();
         builtins.for_each(|name| candidates.push(name));
@@ -460,4 +467,3 @@ fn first_of(mut places: Vec<Place>) -> Place {
         _ => Place::FirstOf(places.into()),
     }
 }
-

@@ -264,7 +264,12 @@ impl Range {
     /// Number of values; infinite for a step of 0, 0 where the step leads away from the end.
     pub(super) fn count(&self) -> f64 {
         let Range { begin, step, end } = *self;
-        if begin.is_nan() || step.is_nan() || end.is_nan() || (step > 0.0 && begin > end) || (step < 0.0 && begin < end) {
+        if begin.is_nan()
+            || step.is_nan()
+            || end.is_nan()
+            || (step > 0.0 && begin > end)
+            || (step < 0.0 && begin < end)
+        {
             return 0.0;
         }
         if begin == end {

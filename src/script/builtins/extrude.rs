@@ -33,7 +33,8 @@ const USUAL_HEIGHT: f64 = 100.0;
 fn linear_extrude<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Made, Failure> {
     let children = plane_children(machine, call)?;
     if call.arguments.get("segments").is_some() {
-        machine.warn(call.span, "ogee does not divide outlines by segments yet; the outline is swept as it is");
+        machine
+            .warn(call.span, "ogee does not divide outlines by segments yet; the outline is swept as it is");
     }
     let Some(vector) = direction(machine, call)? else { return Ok(machine.nothing()) };
     let twist = call.arguments.number("twist").filter(|twist| twist.is_finite()).unwrap_or(0.0);
@@ -139,7 +140,9 @@ fn plane_children<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> R
     if children.shapes.len() < count {
         machine.warn(call.span, "only plane shapes can be extruded; solids are left out");
     }
-    if let Some(value) = call.arguments.get("convexity").filter(|value| !matches!(value, Value::Number(_))).cloned() {
+    if let Some(value) =
+        call.arguments.get("convexity").filter(|value| !matches!(value, Value::Number(_))).cloned()
+    {
         unusable(machine, call, "convexity", &value, "a number")?;
     }
     machine.joined(children, call.span)

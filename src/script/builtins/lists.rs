@@ -7,9 +7,21 @@ use crate::script::eval::Session;
 use crate::script::value::{Items, List, Value};
 
 pub(super) const TABLE: &[Builtin] = &[
-    function_row("len", &["value"], "Number of elements of a list or of characters of a string.", |_, a| len(a)),
-    function_row("concat", &["values"], "One list of all elements of lists; other values stand for themselves.", concat),
-    function_row("lookup", &["key", "table"], "Value at the key, linear between the rows [key, value].", lookup),
+    function_row("len", &["value"], "Number of elements of a list or of characters of a string.", |_, a| {
+        len(a)
+    }),
+    function_row(
+        "concat",
+        &["values"],
+        "One list of all elements of lists; other values stand for themselves.",
+        concat,
+    ),
+    function_row(
+        "lookup",
+        &["key", "table"],
+        "Value at the key, linear between the rows [key, value].",
+        lookup,
+    ),
     function_row("is_undef", &["value"], "Whether the value is undef.", |_, a| test(a, Value::is_undef)),
     function_row("is_bool", &["value"], "Whether the value is true or false.", |_, a| {
         test(a, |value| matches!(value, Value::Bool(_)))
@@ -61,13 +73,16 @@ fn concat(session: &mut Session<'_>, arguments: &[Value]) -> Outcome {
 fn lookup(session: &mut Session<'_>, arguments: &[Value]) -> Outcome {
     let [key, table] = arguments else { return count(2, arguments) };
     let Some(key) = key.finite() else { return undefined("the key must be a finite number") };
-    let Value::List(table) = table else { return undefined(format!("a list is needed, not {}", table.kind())) };
+    let Value::List(table) = table else {
+        return undefined(format!("a list is needed, not {}", table.kind()));
+    };
     session.budget.spend(table.len() as u64)?;
     let rows = table.iter().filter_map(|row| match row.list()?.numbers()? {
         [key, value, ..] => Some((*key, *value)),
         _ => None,
     });
-    let (mut below, mut above): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
+    let mut below: Option<(f64, f64)> = None;
+    let mut above: Option<(f64, f64)> = None;
     for row in rows {
         if row.0 <= key && below.is_none_or(|below| row.0 > below.0) {
             below = Some(row);

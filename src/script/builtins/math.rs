@@ -20,20 +20,31 @@ pub(super) const TABLE: &[Builtin] = &[
         of_two(a, degrees::atan2)
     }),
     function_row("floor", &["x"], "Largest whole number not above x.", |_, a| of_number(a, f64::floor)),
-    function_row("round", &["x"], "Nearest whole number, halves away from 0.", |_, a| of_number(a, f64::round)),
+    function_row("round", &["x"], "Nearest whole number, halves away from 0.", |_, a| {
+        of_number(a, f64::round)
+    }),
     function_row("ceil", &["x"], "Smallest whole number not below x.", |_, a| of_number(a, f64::ceil)),
     function_row("ln", &["x"], "Natural logarithm.", |_, a| of_number(a, math::ln)),
     function_row("log", &["x"], "Logarithm to base 10.", |_, a| of_number(a, math::log10)),
     function_row("exp", &["x"], "e to the power of x.", |_, a| of_number(a, math::exp)),
     function_row("pow", &["x", "y"], "x to the power of y.", |_, a| of_two(a, math::pow)),
     function_row("sqrt", &["x"], "Square root.", |_, a| of_number(a, f64::sqrt)),
-    function_row("max", &["values"], "Largest of its arguments, or of one list.", |_, a| extreme(a, |x, y| x > y)),
-    function_row("min", &["values"], "Smallest of its arguments, or of one list.", |_, a| extreme(a, |x, y| x < y)),
-    function_row("norm", &["v"], "Length of a vector.", |_, a| norm(a)),
-    function_row("cross", &["a", "b"], "Cross product of two vectors in space or in the plane.", |_, a| cross(a)),
-    function_row("version", &[], "Version of OpenSCAD whose language this is, as [year, month, day].", |_, a| {
-        none(a, Value::from_numbers(VERSION.to_vec()))
+    function_row("max", &["values"], "Largest of its arguments, or of one list.", |_, a| {
+        extreme(a, |x, y| x > y)
     }),
+    function_row("min", &["values"], "Smallest of its arguments, or of one list.", |_, a| {
+        extreme(a, |x, y| x < y)
+    }),
+    function_row("norm", &["v"], "Length of a vector.", |_, a| norm(a)),
+    function_row("cross", &["a", "b"], "Cross product of two vectors in space or in the plane.", |_, a| {
+        cross(a)
+    }),
+    function_row(
+        "version",
+        &[],
+        "Version of OpenSCAD whose language this is, as [year, month, day].",
+        |_, a| none(a, Value::from_numbers(VERSION.to_vec())),
+    ),
     function_row("version_num", &[], "The same as one number, 10000 year + 100 month + day.", |_, a| {
         none(a, Value::Number(1e4 * VERSION[0] + 1e2 * VERSION[1] + VERSION[2]))
     }),
@@ -81,7 +92,9 @@ fn extreme(arguments: &[Value], beats: impl Fn(f64, f64) -> bool) -> Outcome {
     };
     let mut best: Option<f64> = None;
     for value in &values {
-        let Value::Number(x) = value else { return undefined(format!("numbers are needed, not {}", value.kind())) };
+        let Value::Number(x) = value else {
+            return undefined(format!("numbers are needed, not {}", value.kind()));
+        };
         if best.is_none_or(|best| beats(*x, best)) {
             best = Some(*x);
         }

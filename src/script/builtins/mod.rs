@@ -14,10 +14,10 @@ mod text;
 
 pub(super) use random::Random;
 
+use super::Failure;
 use super::budget::Outcome;
 use super::eval::{Invocation, Machine, Made, Session};
 use super::value::Value;
-use super::Failure;
 
 /// Something the language brings along.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +111,14 @@ const fn function_row(
     action: FunctionAction,
 ) -> Builtin {
     let positional = parameters.len();
-    Builtin { name, kind: BuiltinKind::Function, parameters, help, positional, action: Action::Function(action) }
+    Builtin {
+        name,
+        kind: BuiltinKind::Function,
+        parameters,
+        help,
+        positional,
+        action: Action::Function(action),
+    }
 }
 
 /// A row for a module, with the number of parameters that may be given without a name.
@@ -174,7 +181,12 @@ mod tests {
         let mut seen = HashSet::new();
         for builtin in builtins() {
             assert!(seen.insert((builtin.kind, builtin.name)), "{} stands twice", builtin.name);
-            assert!(builtin.help.ends_with('.') && builtin.help.len() < 110, "{}: {}", builtin.name, builtin.help);
+            assert!(
+                builtin.help.ends_with('.') && builtin.help.len() < 110,
+                "{}: {}",
+                builtin.name,
+                builtin.help
+            );
             assert!(builtin.positional <= builtin.parameters.len(), "{}", builtin.name);
         }
     }

@@ -19,8 +19,20 @@ pub(super) const TABLE: &[Builtin] = &[
         rotate,
     ),
     module_row("scale", &["v"], 1, "The children scaled by a number or [x, y, z].", scale),
-    module_row("mirror", &["v"], 1, "The children mirrored at the plane through the origin with normal v.", mirror),
-    module_row("multmatrix", &["m"], 1, "The children moved by a matrix of up to 4 rows and columns.", multmatrix),
+    module_row(
+        "mirror",
+        &["v"],
+        1,
+        "The children mirrored at the plane through the origin with normal v.",
+        mirror,
+    ),
+    module_row(
+        "multmatrix",
+        &["m"],
+        1,
+        "The children moved by a matrix of up to 4 rows and columns.",
+        multmatrix,
+    ),
 ];
 
 fn placed<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>, map: Affine3) -> Result<Made, Failure> {
@@ -107,7 +119,7 @@ fn rotate<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Ma
         }
         _ => None,
     };
-    let Some(matrix) = matrix.filter(|matrix| matrix.is_finite()) else {
+    let Some(matrix) = matrix.filter(Mat3::is_finite) else {
         unusable(machine, call, "a", &angle, "a finite number of degrees, or up to three")?;
         return placed(machine, call, Affine3::IDENTITY);
     };
@@ -184,7 +196,9 @@ mod tests {
     fn quarter_turns_are_exact() {
         for quarters in -5..=5 {
             let angle = 90.0 * f64::from(quarters);
-            for matrix in [about_x(angle), about_y(angle), about_z(angle), about(Vec3::new(0.0, -7.0, 0.0), angle)] {
+            for matrix in
+                [about_x(angle), about_y(angle), about_z(angle), about(Vec3::new(0.0, -7.0, 0.0), angle)]
+            {
                 assert!(matrix.to_cols_array().iter().all(|x| [-1.0, 0.0, 1.0].contains(x)), "{matrix}");
             }
         }

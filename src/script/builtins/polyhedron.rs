@@ -26,8 +26,12 @@ fn polyhedron<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Resul
         machine.warn(call.span, "a polyhedron needs points and faces");
         return Ok(machine.nothing());
     };
-    let Some(points): Option<Vec<[f64; 3]>> = vectors(machine, call, "points", &points)? else { return Ok(machine.nothing()) };
-    let Some(faces) = paths(machine, call, "faces", &faces, points.len())? else { return Ok(machine.nothing()) };
+    let Some(points): Option<Vec<[f64; 3]>> = vectors(machine, call, "points", &points)? else {
+        return Ok(machine.nothing());
+    };
+    let Some(faces) = paths(machine, call, "faces", &faces, points.len())? else {
+        return Ok(machine.nothing());
+    };
     let points: Vec<Vec3> = points.into_iter().map(Vec3::from_array).collect();
     let merged = merged_indices(&points);
     let faces: Vec<Vec<u32>> = faces.iter().map(|face| outline(face, &merged)).collect();
@@ -41,7 +45,10 @@ fn polyhedron<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Resul
         return Ok(machine.nothing());
     }
     if volume_sign(&mesh) < 0.0 {
-        machine.warn(call.span, "the polyhedron is inside out and has been turned; faces run clockwise seen from outside");
+        machine.warn(
+            call.span,
+            "the polyhedron is inside out and has been turned; faces run clockwise seen from outside",
+        );
         mesh = mesh.flipped();
     }
     machine.leaf(Csg::Body(Body::Mesh(Arc::new(mesh))), call.span)
@@ -78,7 +85,9 @@ impl OpenEdge {
         match self.faces {
             1 => format!("the polyhedron is open: only one face has the edge between {edge}"),
             2 => format!("one face is inside out: two faces run the same way along the edge between {edge}"),
-            n => format!("the polyhedron is not closed: {n} faces have the edge between {edge} and do not match"),
+            n => format!(
+                "the polyhedron is not closed: {n} faces have the edge between {edge} and do not match"
+            ),
         }
     }
 }

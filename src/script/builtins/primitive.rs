@@ -10,7 +10,13 @@ use crate::script::value::{List, Value};
 use std::sync::Arc;
 
 pub(super) const TABLE: &[Builtin] = &[
-    module_row("cube", &["size", "center"], 2, "A box from the origin, or about it; size is a number or [x, y, z].", cube),
+    module_row(
+        "cube",
+        &["size", "center"],
+        2,
+        "A box from the origin, or about it; size is a number or [x, y, z].",
+        cube,
+    ),
     module_row("sphere", &["r", "d"], 1, "A sphere about the origin, by radius or diameter.", sphere),
     module_row(
         "cylinder",
@@ -30,7 +36,19 @@ pub(super) const TABLE: &[Builtin] = &[
     ),
     module_row(
         "import",
-        &["file", "layer", "convexity", "origin", "scale", "width", "height", "filename", "center", "dpi", "id"],
+        &[
+            "file",
+            "layer",
+            "convexity",
+            "origin",
+            "scale",
+            "width",
+            "height",
+            "filename",
+            "center",
+            "dpi",
+            "id",
+        ],
         3,
         "The solid in a file.",
         import,
@@ -125,7 +143,9 @@ fn polygon<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<M
         machine.warn(call.span, "a polygon needs points");
         return Ok(machine.nothing());
     };
-    let Some(points): Option<Vec<[f64; 2]>> = vectors(machine, call, "points", &points)? else { return Ok(machine.nothing()) };
+    let Some(points): Option<Vec<[f64; 2]>> = vectors(machine, call, "points", &points)? else {
+        return Ok(machine.nothing());
+    };
     let points: Vec<Vec2> = points.into_iter().map(Vec2::from_array).collect();
     let contours = match call.arguments.get("paths").cloned() {
         None => vec![points],
@@ -136,7 +156,8 @@ fn polygon<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<M
             paths.iter().map(|path| path.iter().map(|&index| points[index as usize]).collect()).collect()
         }
     };
-    let contours: Vec<Vec<Vec2>> = contours.into_iter().filter(|contour: &Vec<Vec2>| contour.len() >= 3).collect();
+    let contours: Vec<Vec<Vec2>> =
+        contours.into_iter().filter(|contour: &Vec<Vec2>| contour.len() >= 3).collect();
     if contours.is_empty() {
         machine.warn(call.span, "a polygon needs at least three points");
         return Ok(machine.nothing());
@@ -160,7 +181,12 @@ fn import<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Ma
 }
 
 /// A radius given as such or as a diameter, which wins.
-fn radius<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>, radius: &str, diameter: &str) -> Option<f64> {
+fn radius<'p>(
+    machine: &mut Machine<'p>,
+    call: &Invocation<'_, 'p>,
+    radius: &str,
+    diameter: &str,
+) -> Option<f64> {
     let given = call.arguments.number(radius);
     let Some(twice) = call.arguments.number(diameter) else { return given };
     if given.is_some() {
@@ -170,7 +196,12 @@ fn radius<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>, radius: &str
 }
 
 /// Whether all sizes are positive and finite; a warning where one is not.
-pub(super) fn positive<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>, what: &str, sizes: &[f64]) -> bool {
+pub(super) fn positive<'p>(
+    machine: &mut Machine<'p>,
+    call: &Invocation<'_, 'p>,
+    what: &str,
+    sizes: &[f64],
+) -> bool {
     let bad = sizes.iter().find(|size| !(**size > 0.0 && size.is_finite()));
     if let Some(bad) = bad {
         let bad = crate::script::format::number(*bad);
@@ -191,9 +222,15 @@ pub(super) fn fragments(
 }
 
 /// `count` as a number of fragments, where `facets` are not too many.
-pub(super) fn checked(machine: &mut Machine<'_>, span: Span, count: f64, facets: f64) -> Result<u32, Failure> {
+pub(super) fn checked(
+    machine: &mut Machine<'_>,
+    span: Span,
+    count: f64,
+    facets: f64,
+) -> Result<u32, Failure> {
     if facets > MOST_FACETS || !facets.is_finite() {
-        let text = format!("{count} fragments make {facets} facets, more than the {MOST_FACETS} of one shape");
+        let text =
+            format!("{count} fragments make {facets} facets, more than the {MOST_FACETS} of one shape");
         return Err(machine.limit(span, text));
     }
     Ok(count as u32)

@@ -27,7 +27,8 @@ fn search(session: &mut Session<'_>, arguments: &[Value]) -> Outcome {
     let ([what, table, options @ ..], true) = (arguments, arguments.len() <= 4) else {
         return undefined(format!("2 to 4 arguments needed, {} given", arguments.len()));
     };
-    let option = |index: usize, usual: f64| options.get(index).and_then(Value::finite).unwrap_or(usual).max(0.0);
+    let option =
+        |index: usize, usual: f64| options.get(index).and_then(Value::finite).unwrap_or(usual).max(0.0);
     let matches = option(0, 1.0) as usize;
     let most = if matches == 0 { usize::MAX } else { matches };
     let search = Search { table, most, single: matches == 1, column: option(1, 0.0) as usize };

@@ -9,7 +9,12 @@ use crate::script::value::Value;
 
 pub(super) const TABLE: &[Builtin] = &[
     function_row("str", &["values"], "All values as one string.", str),
-    function_row("chr", &["codes"], "The characters with these codes: numbers, lists or ranges of them.", chr),
+    function_row(
+        "chr",
+        &["codes"],
+        "The characters with these codes: numbers, lists or ranges of them.",
+        chr,
+    ),
     function_row("ord", &["string"], "Code of the first character.", |_, a| ord(a)),
 ];
 
@@ -56,7 +61,9 @@ fn char_of(code: f64) -> Option<char> {
 
 fn ord(arguments: &[Value]) -> Result<Value, Fault> {
     match arguments {
-        [Value::Text(text)] => Ok(text.char(0).map_or(Value::Undef, |c| Value::Number(f64::from(u32::from(c))))),
+        [Value::Text(text)] => {
+            Ok(text.char(0).map_or(Value::Undef, |c| Value::Number(f64::from(u32::from(c)))))
+        }
         [other] => undefined(format!("a string is needed, not {}", other.kind())),
         _ => count(1, arguments),
     }

@@ -91,9 +91,11 @@ impl<'p> Machine<'p> {
         }
         let Some(name) = name.map(|name| self.program.names.text(name)) else {
             let most = builtin.positional;
-            return self.warn(argument.span, format!("{} takes {most} arguments without names", builtin.name));
+            return self
+                .warn(argument.span, format!("{} takes {most} arguments without names", builtin.name));
         };
-        let complaint = Complaint::warning(argument.span, format!("{} has no parameter {name}", builtin.name));
+        let complaint =
+            Complaint::warning(argument.span, format!("{} has no parameter {name}", builtin.name));
         self.say(match suggest::closest(name, builtin.parameters.iter().copied()) {
             Some(meant) => complaint.hint(format!("did you mean {meant}?")),
             None if builtin.parameters.is_empty() => complaint,
@@ -102,7 +104,10 @@ impl<'p> Machine<'p> {
     }
 
     /// The children of a call, one shape for each that makes any.
-    pub(in crate::script) fn children_of(&mut self, invocation: &Invocation<'_, 'p>) -> Result<Made, Failure> {
+    pub(in crate::script) fn children_of(
+        &mut self,
+        invocation: &Invocation<'_, 'p>,
+    ) -> Result<Made, Failure> {
         self.block(&invocation.call.children, invocation.context)
     }
 

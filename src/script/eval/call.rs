@@ -179,7 +179,10 @@ impl<'p> Machine<'p> {
             (Some(index), _) => {
                 if given.has(&parameters[index], inner) {
                     let name = self.program.names.text(parameters[index].name);
-                    self.warn(argument.span, format!("the argument {name} is given twice; the last one counts"));
+                    self.warn(
+                        argument.span,
+                        format!("the argument {name} is given twice; the last one counts"),
+                    );
                 }
                 match parameters[index].slot {
                     Slot::Local(slot) => inner.set(slot, Some(value)),
@@ -261,12 +264,15 @@ impl<'p> Machine<'p> {
     fn tail_call(&mut self, call: &'p Call, id: ExprId, frame: &Rc<Frame>) -> Result<Tail, Failure> {
         let span = self.program.span(id);
         match self.find(call, span, frame)? {
-            Found::Builtin(builtin) => self.call_builtin(builtin, &call.arguments, span, frame).map(Tail::Value),
+            Found::Builtin(builtin) => {
+                self.call_builtin(builtin, &call.arguments, span, frame).map(Tail::Value)
+            }
             Found::Nothing => Ok(Tail::Value(Value::Undef)),
             Found::Function(ready) => {
                 let parameters = &self.program[ready.function].parameters;
                 let has_special = parameters.iter().any(|parameter| parameter.slot == Slot::Special);
-                let enters = ready.unit != self.unit && !self.units[ready.unit.0 as usize].specials.is_empty();
+                let enters =
+                    ready.unit != self.unit && !self.units[ready.unit.0 as usize].specials.is_empty();
                 let mark = self.specials.mark();
                 let pending = self.prepare(ready, call, span, frame)?;
                 if !has_special && !enters {

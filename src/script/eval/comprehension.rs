@@ -158,7 +158,11 @@ impl<'p> Machine<'p> {
             return 0;
         }
         if count == 0.0 && !(range.begin.is_nan() || range.step.is_nan() || range.end.is_nan()) {
-            let way = if range.step > 0.0 { "begins above its end, but its step is positive" } else { "begins below its end, but its step is negative" };
+            let way = if range.step > 0.0 {
+                "begins above its end, but its step is positive"
+            } else {
+                "begins below its end, but its step is negative"
+            };
             self.warn(span, format!("the range {way}"));
         }
         count as u64

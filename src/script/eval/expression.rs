@@ -94,7 +94,13 @@ impl<'p> Machine<'p> {
         self.kept.push(Rc::downgrade(frame));
     }
 
-    fn variable(&mut self, name: Symbol, place: &Place, id: ExprId, frame: &Rc<Frame>) -> Result<Value, Failure> {
+    fn variable(
+        &mut self,
+        name: Symbol,
+        place: &Place,
+        id: ExprId,
+        frame: &Rc<Frame>,
+    ) -> Result<Value, Failure> {
         if let Some(value) = self.look_up(name, place, frame)? {
             return Ok(value);
         }
@@ -205,7 +211,8 @@ impl<'p> Machine<'p> {
                 continue;
             };
             if bindings[..index].iter().any(|earlier| earlier.name == Some(name)) {
-                let text = format!("{} is bound twice; the first value counts", self.program.names.text(name));
+                let text =
+                    format!("{} is bound twice; the first value counts", self.program.names.text(name));
                 self.warn(binding.span, text);
                 continue;
             }
@@ -321,7 +328,9 @@ fn element(list: &Value, index: &Value) -> Value {
     match list {
         Value::List(list) => list.get(index).unwrap_or_default(),
         Value::Text(text) => text.char(index).map_or(Value::Undef, Value::from_text),
-        Value::Range(range) => [range.begin, range.step, range.end].get(index).copied().map_or(Value::Undef, Value::Number),
+        Value::Range(range) => {
+            [range.begin, range.step, range.end].get(index).copied().map_or(Value::Undef, Value::Number)
+        }
         _ => Value::Undef,
     }
 }
@@ -336,7 +345,8 @@ fn member(object: &Value, name: &str) -> Value {
             _ => Value::Undef,
         },
         Value::List(list) => {
-            let component = |c: char| "xyzw".find(c).or_else(|| "rgba".find(c)).and_then(|index| list.get(index));
+            let component =
+                |c: char| "xyzw".find(c).or_else(|| "rgba".find(c)).and_then(|index| list.get(index));
             let mut components = name.chars().map(component);
             if name.len() == 1 {
                 return components.next().flatten().unwrap_or_default();

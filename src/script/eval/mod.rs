@@ -54,7 +54,9 @@ pub(super) fn run(
     let made = result?;
     let (recipe, shown) = match machine.root.take() {
         Some((shape, shown)) => (shape.recipe, shown),
-        None => (made.shapes.into_iter().next().map_or_else(|| Arc::new(Csg::Nothing), |s| s.recipe), made.shown),
+        None => {
+            (made.shapes.into_iter().next().map_or_else(|| Arc::new(Csg::Nothing), |s| s.recipe), made.shown)
+        }
     };
     let shown = shown.into_iter().map(|shape| shape.recipe).collect();
     Ok(Evaluated { recipe, shown, files: machine.files.to_vec() })
@@ -241,7 +243,9 @@ impl<'p> Machine<'p> {
             return self.calls.iter().rev().map(frame).collect();
         }
         let hidden = &self.calls[TRACE_END..count - TRACE_END];
-        let gap = hidden.last().map(|call| TraceFrame { name: format!("... {} more calls", hidden.len()), span: call.span });
+        let gap = hidden
+            .last()
+            .map(|call| TraceFrame { name: format!("... {} more calls", hidden.len()), span: call.span });
         let inner = self.calls[count - TRACE_END..].iter().rev().map(frame);
         inner.chain(gap).chain(self.calls[..TRACE_END].iter().rev().map(frame)).collect()
     }

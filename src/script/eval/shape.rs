@@ -64,7 +64,10 @@ impl Machine<'_> {
         // Recipes stay until the end; they are counted and never given back.
         heap::took(NODE);
         if depth > DEEPEST {
-            return Err(self.limit(span, format!("the shape is made of more than {DEEPEST} operations within each other")));
+            return Err(self.limit(
+                span,
+                format!("the shape is made of more than {DEEPEST} operations within each other"),
+            ));
         }
         self.step(span)?;
         Ok(Shape { recipe: Arc::new(recipe), dimension, depth })
@@ -109,7 +112,8 @@ impl Machine<'_> {
             return Ok(Made::one(Shape::nothing(), shown));
         };
         let depth = 1 + shapes.iter().map(|shape| shape.depth).max().unwrap_or(0);
-        let children = shapes.into_iter().filter(|s| s.dimension.is_some()).map(|shape| shape.recipe).collect();
+        let children =
+            shapes.into_iter().filter(|s| s.dimension.is_some()).map(|shape| shape.recipe).collect();
         Ok(Made::one(self.node(Csg::Hull { children }, Some(dimension), depth, span)?, shown))
     }
 
@@ -149,7 +153,9 @@ impl Machine<'_> {
                 Some(Dimension::Two) => ("plane", "solid"),
                 _ => ("solid", "plane"),
             };
-            let text = format!("plane and solid shapes do not mix: the first is {kept}, so {dropped} ones are left out");
+            let text = format!(
+                "plane and solid shapes do not mix: the first is {kept}, so {dropped} ones are left out"
+            );
             self.warn(span, text);
         }
         shapes

@@ -110,6 +110,11 @@ impl Specials {
             let value = self.known.fragments[index].and_then(|name| self.stacks[name.index()].last());
             value.and_then(Value::number).filter(|value| !value.is_nan()).unwrap_or(usual)
         };
-        Fragmentation { count: number(0, 0.0), angle: number(1, 12.0), size: number(2, 2.0), error: number(3, 0.0) }
+        Fragmentation {
+            count: number(0, 0.0),
+            angle: number(1, 12.0),
+            size: number(2, 2.0),
+            error: number(3, 0.0),
+        }
     }
 }

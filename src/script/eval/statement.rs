@@ -4,7 +4,8 @@ use super::expression::room;
 use super::{Failure, Machine, Made, Running, Shape, What};
 use crate::boolean::Op;
 use crate::script::ast::{
-    Binding, Block, Home, ModuleCall, ModuleId, Room, Slot, Statement, StatementId, StatementKind, Target, UnitId,
+    Binding, Block, Home, ModuleCall, ModuleId, Room, Slot, Statement, StatementId, StatementKind, Target,
+    UnitId,
 };
 use crate::script::builtins::{Action, BuiltinKind};
 use crate::script::diagnostic::Span;
@@ -31,7 +32,11 @@ pub(super) struct Children<'p> {
 
 impl<'p> Machine<'p> {
     /// What the statements of an inner block make.
-    pub(in crate::script) fn block(&mut self, block: &'p Block, context: &Context<'p>) -> Result<Made, Failure> {
+    pub(in crate::script) fn block(
+        &mut self,
+        block: &'p Block,
+        context: &Context<'p>,
+    ) -> Result<Made, Failure> {
         self.chosen(block, context, |machine, context| machine.statements(&block.statements, context))
     }
 
@@ -132,7 +137,8 @@ impl<'p> Machine<'p> {
             }
             StatementKind::Let { bindings, body, room: kind } => {
                 let mark = self.specials.mark();
-                let context = Context { frame: room(*kind, &context.frame), children: context.children.clone() };
+                let context =
+                    Context { frame: room(*kind, &context.frame), children: context.children.clone() };
                 self.bind_all(bindings, &context.frame)?;
                 let made = self.block(body, &context)?;
                 self.specials.restore(mark);

@@ -1,10 +1,11 @@
 use super::{Parse, Parser};
 use crate::script::ast::{
-    Argument, BinaryOp, Binding, Call, Callee, Expr, ExprId, Function, FunctionId, Let, Parameter, Place, Room,
-    Slot, Target, UnaryOp, While,
+    Argument, BinaryOp, Binding, Call, Callee, Expr, ExprId, Function, FunctionId, Let, Parameter, Place,
+    Room, Slot, Target, UnaryOp, While,
 };
 use crate::script::diagnostic::Span;
 use crate::script::lexer::{Keyword, TokenKind};
+use crate::script::names::Symbol;
 use crate::script::report::Complaint;
 use crate::script::value::Text;
 use std::rc::Rc;
@@ -117,7 +118,7 @@ impl Parser<'_> {
             }
             _ => Callee::Value(callee),
         };
-        let has_special = arguments.iter().any(|a| a.name.is_some_and(|name| name.is_special()));
+        let has_special = arguments.iter().any(|a| a.name.is_some_and(Symbol::is_special));
         self.add(Expr::Call(Box::new(Call { callee, arguments, has_special })), start)
     }
 
@@ -170,9 +171,10 @@ impl Parser<'_> {
     fn at_expression(&self) -> bool {
         match self.peek() {
             TokenKind::Mark(mark) => matches!(*mark, "(" | "[") || unary(mark).is_some(),
-            TokenKind::Keyword(keyword) => {
-                !matches!(keyword, Keyword::Else | Keyword::Each | Keyword::For | Keyword::If | Keyword::Module)
-            }
+            TokenKind::Keyword(keyword) => !matches!(
+                keyword,
+                Keyword::Else | Keyword::Each | Keyword::For | Keyword::If | Keyword::Module
+            ),
             TokenKind::Number(_) | TokenKind::Text(_) | TokenKind::Name(_) => true,
             TokenKind::Include(_) | TokenKind::Use(_) | TokenKind::End => false,
         }

@@ -126,7 +126,8 @@ impl Parser<'_> {
     }
 
     fn gave_up(&self) -> bool {
-        self.complaints.iter().filter(|complaint| complaint.severity == Severity::Error).count() >= MOST_ERRORS
+        self.complaints.iter().filter(|complaint| complaint.severity == Severity::Error).count()
+            >= MOST_ERRORS
     }
 
     /// From `start` to the last token taken.

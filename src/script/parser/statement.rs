@@ -143,7 +143,12 @@ impl Parser<'_> {
         self.mark("=")?;
         let value = self.expression()?;
         self.mark(";")?;
-        block.assignments.push(Binding { name: Some(name), value, slot: Slot::Special, span: self.since(start) });
+        block.assignments.push(Binding {
+            name: Some(name),
+            value,
+            slot: Slot::Special,
+            span: self.since(start),
+        });
         Ok(())
     }
 
@@ -184,7 +189,9 @@ impl Parser<'_> {
                 TokenKind::Keyword(Keyword::If) => parser.if_statement()?,
                 TokenKind::Keyword(Keyword::For) => parser.for_statement(false)?,
                 TokenKind::Keyword(Keyword::Let) => parser.let_statement()?,
-                TokenKind::Keyword(Keyword::Assert | Keyword::Echo) | TokenKind::Name(_) => parser.module_call()?,
+                TokenKind::Keyword(Keyword::Assert | Keyword::Echo) | TokenKind::Name(_) => {
+                    parser.module_call()?
+                }
                 _ => return parser.unexpected("a statement"),
             };
             parser.program.statements.push(Statement { modifiers, kind, span });

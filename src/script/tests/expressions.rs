@@ -11,7 +11,8 @@ fn expressions_have_the_values_seen_in_openscad() {
     for line in OBSERVED.lines() {
         let mut fields = line.split('\t');
         let (expression, value) = (fields.next().unwrap_or_default(), fields.next().unwrap_or_default());
-        let value = value.replace("\\t", "\t").replace("\\n", "\n").replace("\\\"", "\"").replace("\\\\", "\\");
+        let value =
+            value.replace("\\t", "\t").replace("\\n", "\n").replace("\\\"", "\"").replace("\\\\", "\\");
         let warns = fields.next().is_some_and(|field| field.starts_with("warns"));
         let mut host = Memory::default();
         let result = host.run(&format!("echo(({expression}));"));
@@ -41,17 +42,26 @@ fn snapshots_have_bits_and_hexadecimal_numbers() {
 #[test]
 fn texts_are_written_in_many_ways() {
     check_echo("\u{feff}echo\u{a0}( 1 /* a */ , // b\n 2 )\u{feff};", &["1, 2"]);
-    check_echo("1st = 1; 2_nd = 2; 3e = 3; 0x = 4; echo(1st, 2_nd, 3e, 0x, 1e1, 0x1F);", &["1, 2, 3, 4, 10, 31"]);
+    check_echo(
+        "1st = 1; 2_nd = 2; 3e = 3; 0x = 4; echo(1st, 2_nd, 3e, 0x, 1e1, 0x1F);",
+        &["1, 2, 3, 4, 10, 31"],
+    );
     check_echo("echo(\"a\nb\", \"\\u00e9\\U01f600\\x41\\t\\\\\\\"\");", &["\"a\nb\", \"é😀A\t\\\"\""]);
     check_echo("echo([1, 2,], max(1, 2,),); function f(a, b,) = a + b; echo(f(1, 2,));", &["[1, 2], 2", "3"]);
-    check_echo("echo(-2^2, 2^-2, -2^-2, 2^3^2, !1^2, 2*-3, 1--1, - -1);", &["-4, 0.25, -0.25, 512, false, -6, 2, 1"]);
+    check_echo(
+        "echo(-2^2, 2^-2, -2^-2, 2^3^2, !1^2, 2*-3, 1--1, - -1);",
+        &["-4, 0.25, -0.25, 512, false, -6, 2, 1"],
+    );
 }
 
 #[test]
 fn tail_calls_take_no_stack_and_others_little() {
     check_echo("function f(n, a = 0) = n == 0 ? a : f(n - 1, a + n); echo(f(200000));", &["2.00001e+10"]);
     check_echo("function f(n) = n == 0 ? 0 : let (m = n - 1) assert(m >= 0) f(m); echo(f(50000));", &["0"]);
-    check_echo("function a(n) = n == 0 ? \"a\" : b(n - 1); function b(n) = n == 0 ? \"b\" : a(n - 1); echo(a(50001));", &["\"b\""]);
+    check_echo(
+        "function a(n) = n == 0 ? \"a\" : b(n - 1); function b(n) = n == 0 ? \"b\" : a(n - 1); echo(a(50001));",
+        &["\"b\""],
+    );
     check_echo("f = function(n) n == 0 ? 0 : f(n - 1); echo(f(50000));", &["0"]);
     check_echo("function f(n) = n == 0 ? 0 : 1 + f(n - 1); echo(f(15000));", &["15000"]);
     check_echo("function f(n) = n == 0 ? [] : [for (x = [0]) f(n - 1)]; echo(len(f(3000)));", &["1"]);
@@ -107,7 +117,8 @@ fn expression() -> impl Strategy<Value = String> {
         Just("$fn".to_owned()),
     ];
     leaf.prop_recursive(4, 40, 3, |inner| {
-        let op = prop::sample::select(vec!["+", "-", "*", "/", "%", "^", "<", ">=", "==", "&&", "||", "&", "<<"]);
+        let op =
+            prop::sample::select(vec!["+", "-", "*", "/", "%", "^", "<", ">=", "==", "&&", "||", "&", "<<"]);
         let unary = prop::sample::select(vec!["-", "!", "~", "+"]);
         prop_oneof![
             (inner.clone(), op, inner.clone()).prop_map(|(a, op, b)| format!("{a} {op} {b}")),

@@ -46,7 +46,10 @@ fn sharing_does_not_hide_size() {
     // A list of two of a list of two of ..., fifty deep, takes no room; to look at all of it takes for ever.
     let double = "d = [for (i = 0, s = [1]; i < 50; i = i + 1, s = [s, s]) s][49];";
     check_limit(&format!("{double} echo(d);"), "steps");
-    check_limit(&format!("{double} x = d == [for (i = 0, s = [1]; i < 50; i = i + 1, s = [s, s]) s][49];"), "steps");
+    check_limit(
+        &format!("{double} x = d == [for (i = 0, s = [1]; i < 50; i = i + 1, s = [s, s]) s][49];"),
+        "steps",
+    );
     check_limit(&format!("{double} x = -d;"), "");
     check_limit(&format!("{double} x = d * 2;"), "");
     check_limit(&format!("{double} x = d + d;"), "");
@@ -77,7 +80,19 @@ fn deep_values_live_and_die() {
 
 #[test]
 fn deep_texts_are_refused() {
-    for (open, close) in [("(", ")"), ("[", "]"), ("-", ""), ("!", ""), ("f(", ")"), ("let(a=", ")"), ("1?", ":1"), ("function() ", ""), ("[for(i=", ") i]"), ("a[", "]"), ("2^", "")] {
+    for (open, close) in [
+        ("(", ")"),
+        ("[", "]"),
+        ("-", ""),
+        ("!", ""),
+        ("f(", ")"),
+        ("let(a=", ")"),
+        ("1?", ":1"),
+        ("function() ", ""),
+        ("[for(i=", ") i]"),
+        ("a[", "]"),
+        ("2^", ""),
+    ] {
         let text = format!("x = {}1{};", open.repeat(100_000), close.repeat(100_000));
         let mut host = Memory::default();
         assert_eq!(host.run(&text).map(|_| ()), Err(Failure::Error), "{open}");
@@ -94,7 +109,10 @@ fn long_texts_are_read() {
     let sum = format!("echo({}0);", "1 + ".repeat(50_000));
     check_echo(&sum, &["50000"]);
     check_echo(&format!("echo(len([{}]));", "1, ".repeat(100_000)), &["100000"]);
-    check_echo(&format!("x = {}; echo(x);", (0..5000).map(|i| format!("false ? {i} : ")).collect::<String>() + "7"), &["7"]);
+    check_echo(
+        &format!("x = {}; echo(x);", (0..5000).map(|i| format!("false ? {i} : ")).collect::<String>() + "7"),
+        &["7"],
+    );
     let chain = format!("a = [1]; x = a{}; echo(x);", "[0]".repeat(50_000));
     check_echo(&chain, &["undef"]);
     let too_long = format!("x = {}0;", "1 + ".repeat(200_000));
@@ -112,9 +130,15 @@ fn circles_of_files_are_seen() {
     assert!(result == Err(Failure::Error) && errors.contains("a includes itself"), "{errors}");
     let (result, errors) = run(&[("a", "include <b>\n"), ("b", "include <a>\n")], "include <a>\n");
     assert!(result == Err(Failure::Error) && errors.contains("includes itself"), "{errors}");
-    let (result, _) = run(&[("a", "use <b>\nfunction a() = 1;"), ("b", "use <a>\nfunction b() = a();")], "use <a>\nuse <b>\nx = b();");
+    let (result, _) = run(
+        &[("a", "use <b>\nfunction a() = 1;"), ("b", "use <a>\nfunction b() = a();")],
+        "use <a>\nuse <b>\nx = b();",
+    );
     assert_eq!(result, Ok(()));
-    let (result, _) = run(&[("a", "use <b>\nx = b(); function a() = x;"), ("b", "use <a>\ny = a(); function b() = y;")], "use <a>\nz = a();");
+    let (result, _) = run(
+        &[("a", "use <b>\nx = b(); function a() = x;"), ("b", "use <a>\ny = a(); function b() = y;")],
+        "use <a>\nz = a();",
+    );
     assert_eq!(result, Ok(()));
 }
 
@@ -147,10 +171,67 @@ proptest! {
 }
 
 const WORDS: &[&str] = &[
-    "module", "function", "if", "else", "for", "let", "assert", "echo", "each", "true", "undef", "(", ")", "[", "]", "{",
-    "}", ";", ",", "=", "==", "?", ":", "+", "-", "*", "/", "%", "^", "!", "&&", "<<", ".", "#", "x", "y", "m", "f", "$fn",
-    "$children", "children", "cube", "translate", "difference", "1", "0", "1e308", "\"s\"", "[0:3]", "[1,2,3]", "x = 1;",
-    "cube(1);", "include <a>", "use <b>", "polygon", "linear_extrude", "rotate", "search", "str", "rands", "concat",
+    "module",
+    "function",
+    "if",
+    "else",
+    "for",
+    "let",
+    "assert",
+    "echo",
+    "each",
+    "true",
+    "undef",
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    ";",
+    ",",
+    "=",
+    "==",
+    "?",
+    ":",
+    "+",
+    "-",
+    "*",
+    "/",
+    "%",
+    "^",
+    "!",
+    "&&",
+    "<<",
+    ".",
+    "#",
+    "x",
+    "y",
+    "m",
+    "f",
+    "$fn",
+    "$children",
+    "children",
+    "cube",
+    "translate",
+    "difference",
+    "1",
+    "0",
+    "1e308",
+    "\"s\"",
+    "[0:3]",
+    "[1,2,3]",
+    "x = 1;",
+    "cube(1);",
+    "include <a>",
+    "use <b>",
+    "polygon",
+    "linear_extrude",
+    "rotate",
+    "search",
+    "str",
+    "rands",
+    "concat",
 ];
 
 /// One of everything.

@@ -75,7 +75,8 @@ pub(super) fn check_complaint(severity: Severity, text: &str, part: &str, at: &s
     let mut host = Memory::default();
     let result = host.run(text);
     assert_eq!(result.is_err(), severity == Severity::Error, "{text}\n{:#?}", host.messages);
-    let found = host.messages.iter().find(|message| message.severity == severity && message.text.contains(part));
+    let found =
+        host.messages.iter().find(|message| message.severity == severity && message.text.contains(part));
     let Some(message) = found else { panic!("{text}\n{:#?}", host.messages) };
     let span = message.at.as_ref().expect("a place").span;
     let place = &message.files[span.file.0 as usize].text[span.start as usize..span.end as usize];

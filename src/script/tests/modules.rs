@@ -56,10 +56,18 @@ fn primitives_take_their_sizes() {
 
 #[test]
 fn what_has_no_size_is_nothing() {
-    for text in ["cube(0);", "cube([1, 0, 1]);", "cube(-1);", "sphere(0/0);", "sphere(1/0);", "cylinder(h = -1);"] {
+    for text in
+        ["cube(0);", "cube([1, 0, 1]);", "cube(-1);", "sphere(0/0);", "sphere(1/0);", "cylinder(h = -1);"]
+    {
         check(text, &Csg::Nothing);
     }
-    for text in ["cylinder(r1 = 0, r2 = 0);", "circle(-1);", "square(1/0);", "polygon([]);", "polygon([[0, 0], [1, 0]]);"] {
+    for text in [
+        "cylinder(r1 = 0, r2 = 0);",
+        "circle(-1);",
+        "square(1/0);",
+        "polygon([]);",
+        "polygon([[0, 0], [1, 0]]);",
+    ] {
         check(text, &Csg::Nothing);
     }
     for text in ["", "union();", "hull() {}", "difference() { cube(-1); cube(1); }", "*cube();"] {
@@ -79,7 +87,12 @@ fn polygons_have_paths() {
     let points = "[[0, 0], [1, 0], [0, 1], [1, 1]]";
     let second = vec![[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
     check(&format!("polygon({points}, [[0, 1, 2], [1, 2, 3]]);"), &polygon(vec![triangle, second]));
-    check_complaint(Severity::Warning, "polygon([[0, 0], [1, 0], [0, 1]], [[0, 1, 7]]);", "paths[0]", "polygon([[0, 0], [1, 0], [0, 1]], [[0, 1, 7]])");
+    check_complaint(
+        Severity::Warning,
+        "polygon([[0, 0], [1, 0], [0, 1]], [[0, 1, 7]]);",
+        "paths[0]",
+        "polygon([[0, 0], [1, 0], [0, 1]], [[0, 1, 7]])",
+    );
 }
 
 #[test]
@@ -96,8 +109,14 @@ fn statements_are_joined() {
     check("difference() { for (i = []) cube(5); cube(3); }", &Csg::Nothing);
     check("module none() {} difference() { none(); cube(4); }", &Csg::Nothing);
     check("intersection() { group(); cube(5); }", &combine(Op::Intersection, &[Csg::Nothing, cube(5.0)]));
-    check("module m() { difference() { children(0); children(1); } } m() { cube(2); cube(1); }", &combine(Op::Difference, &[cube(2.0), cube(1.0)]));
-    check("hull() { cube(1); group(); cube(2); }", &Csg::Hull { children: vec![Arc::new(cube(1.0)), Arc::new(cube(2.0))] });
+    check(
+        "module m() { difference() { children(0); children(1); } } m() { cube(2); cube(1); }",
+        &combine(Op::Difference, &[cube(2.0), cube(1.0)]),
+    );
+    check(
+        "hull() { cube(1); group(); cube(2); }",
+        &Csg::Hull { children: vec![Arc::new(cube(1.0)), Arc::new(cube(2.0))] },
+    );
 }
 
 #[test]
@@ -135,8 +154,18 @@ fn placements_are_exact_where_they_can_be() {
     check_same("mirror() cube();", "mirror([1, 0, 0]) cube();");
     check_same("mirror([1, 1, 0]) cube();", "multmatrix([[0, -1], [-1, 0]]) cube();");
     check_same("mirror([0, 0, 0]) cube();", "cube();");
-    check_same("multmatrix([[1, 0, 0, 5], [0, 1, 0, 6], [0, 0, 1, 7], [0, 0, 0, 2]]) cube();", "multmatrix([[.5, 0, 0, 2.5], [0, .5, 0, 3], [0, 0, .5, 3.5]]) cube();");
-    for text in ["translate(5)", "translate(\"a\")", "translate([1/0, 0])", "rotate(\"a\")", "rotate(1/0)", "scale(undef)"] {
+    check_same(
+        "multmatrix([[1, 0, 0, 5], [0, 1, 0, 6], [0, 0, 1, 7], [0, 0, 0, 2]]) cube();",
+        "multmatrix([[.5, 0, 0, 2.5], [0, .5, 0, 3], [0, 0, .5, 3.5]]) cube();",
+    );
+    for text in [
+        "translate(5)",
+        "translate(\"a\")",
+        "translate([1/0, 0])",
+        "rotate(\"a\")",
+        "rotate(1/0)",
+        "scale(undef)",
+    ] {
         check_same(&format!("{text} cube();"), "cube();");
     }
 }
@@ -153,8 +182,14 @@ fn general_rotations_agree_with_openscad() {
             }
         }
     };
-    check("rotate([30, 40, 50])", [[0.492404, -0.456826, 0.740843], [0.586824, 0.802872, 0.10504], [-0.642788, 0.383022, 0.663414]]);
-    check("rotate(30, [1, 1, 0])", [[0.933013, 0.0669873, 0.353553], [0.0669873, 0.933013, -0.353553], [-0.353553, 0.353553, 0.866025]]);
+    check(
+        "rotate([30, 40, 50])",
+        [[0.492404, -0.456826, 0.740843], [0.586824, 0.802872, 0.10504], [-0.642788, 0.383022, 0.663414]],
+    );
+    check(
+        "rotate(30, [1, 1, 0])",
+        [[0.933013, 0.0669873, 0.353553], [0.0669873, 0.933013, -0.353553], [-0.353553, 0.353553, 0.866025]],
+    );
 }
 
 #[test]
@@ -168,14 +203,19 @@ fn extrusions_take_their_numbers() {
     assert_eq!(sweep("linear_extrude(h = 7) square(5);").vector.z, 7.0);
     let slant = sweep("linear_extrude(height = 5, v = [3, 0, 4]) square(1);").vector;
     assert!((slant - Vec3::new(3.0, 0.0, 4.0)).length() < 1e-15);
-    assert_eq!(sweep("linear_extrude(1, scale = [1, 2], center = true) square(1);").scale, Vec2::new(1.0, 2.0));
+    assert_eq!(
+        sweep("linear_extrude(1, scale = [1, 2], center = true) square(1);").scale,
+        Vec2::new(1.0, 2.0)
+    );
     assert_eq!(sweep("linear_extrude(10, twist = 90) square(5);").slices, 8);
     assert_eq!(sweep("linear_extrude(10, twist = 720) square(5);").slices, 45);
     assert_eq!(sweep("linear_extrude(10, twist = 720) rotate(45) color(\"red\") square(5);").slices, 45);
     assert_eq!(sweep("linear_extrude(10, twist = 90, slices = 3) square(5);").slices, 3);
     assert_eq!(made("linear_extrude(0) square(1);").recipe.dimension(), None);
     let turn = |text: &str| match &*made(text).recipe {
-        Csg::RotateExtrude { sweep, .. } => (sweep.angle.to_degrees().round(), sweep.start.to_degrees().round(), sweep.fragments),
+        Csg::RotateExtrude { sweep, .. } => {
+            (sweep.angle.to_degrees().round(), sweep.start.to_degrees().round(), sweep.fragments)
+        }
         other => panic!("{text}: {other:?}"),
     };
     assert_eq!(turn("rotate_extrude() translate([3, 0]) square(1);"), (360.0, 180.0, 13));
@@ -193,7 +233,12 @@ fn polyhedra_are_checked() {
     let good = polyhedron("[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]");
     let Csg::Body(Body::Mesh(mesh)) = &*made(&good).recipe else { panic!("a mesh") };
     let solid = crate::mesh::Solid::new((**mesh).clone()).expect("a closed mesh");
-    let volume: f64 = (0..4).map(|t| { let [a, b, c] = solid.mesh().corners(t); a.dot(b.cross(c)) / 6.0 }).sum();
+    let volume: f64 = (0..4)
+        .map(|t| {
+            let [a, b, c] = solid.mesh().corners(t);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum();
     assert!((volume - 1.0 / 6.0).abs() < 1e-15);
     let turned = polyhedron("[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]");
     assert!(matches!(&*made(&turned).recipe, Csg::Body(Body::Mesh(_))));
@@ -213,13 +258,23 @@ fn files_come_from_the_host() {
     host.meshes.insert("a.stl", mesh.clone());
     let recipe = host.run("import(\"a.stl\", convexity = 3);").expect("it runs").recipe;
     assert_eq!(*recipe, Csg::Body(Body::Mesh(mesh)));
-    check_complaint(Severity::Error, "import(\"b.stl\");", "cannot import b.stl: there is no such file", "import(\"b.stl\")");
+    check_complaint(
+        Severity::Error,
+        "import(\"b.stl\");",
+        "cannot import b.stl: there is no such file",
+        "import(\"b.stl\")",
+    );
 }
 
 #[test]
 fn what_is_missing_is_named() {
     for name in builtins().filter(|b| b.kind == BuiltinKind::Missing).map(|b| b.name) {
-        check_complaint(Severity::Error, &format!("{name}();"), &format!("ogee does not have {name}() yet"), &format!("{name}()"));
+        check_complaint(
+            Severity::Error,
+            &format!("{name}();"),
+            &format!("ogee does not have {name}() yet"),
+            &format!("{name}()"),
+        );
     }
     check("module text(t) cube(1); text(\"own\");", &cube(1.0));
 }

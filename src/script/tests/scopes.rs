@@ -7,7 +7,8 @@ const LIB: (&str, &str) = (
     "$fn = 7; w = 3; module m() { echo(\"m\", $fn, w); children(); } function lf() = w;
      echo(\"never\"); cube(9); module dup() { echo(\"lib\"); }",
 );
-const SECOND: (&str, &str) = ("second.scad", "use <lib.scad>\nmodule dup() { echo(\"second\"); } function two() = 2 * lf();");
+const SECOND: (&str, &str) =
+    ("second.scad", "use <lib.scad>\nmodule dup() { echo(\"second\"); } function two() = 2 * lf();");
 
 #[test]
 fn variables_are_lexical_and_hoisted() {
@@ -32,13 +33,22 @@ fn a_name_may_be_a_function_a_module_and_a_variable() {
     // In one scope the function comes first: observed in 2025.07.
     check_echo("f = function(x) \"value\"; function f(x) = \"named\"; echo(f(0));", &["\"named\""]);
     check_echo("a = function(x) 1; module m() { function a(x) = 2; echo(a(0)); } m();", &["2"]);
-    check_echo("function sin(x) = \"own\"; echo(sin(30)); module cube() echo(\"own\"); cube();", &["\"own\"", "\"own\""]);
+    check_echo(
+        "function sin(x) = \"own\"; echo(sin(30)); module cube() echo(\"own\"); cube();",
+        &["\"own\"", "\"own\""],
+    );
 }
 
 #[test]
 fn special_variables_belong_to_the_caller() {
-    check_echo("module q() echo($z); module p($z = 3) { children(); q(); } p() echo($z); p($z = 4) echo($z);", &["3", "3", "4", "4"]);
-    check_echo("module p() { $a = 1; children(); } p() echo($a); module r() { $a = 2; p() echo($a); } r();", &["1", "1"]);
+    check_echo(
+        "module q() echo($z); module p($z = 3) { children(); q(); } p() echo($z); p($z = 4) echo($z);",
+        &["3", "3", "4", "4"],
+    );
+    check_echo(
+        "module p() { $a = 1; children(); } p() echo($a); module r() { $a = 2; p() echo($a); } r();",
+        &["1", "1"],
+    );
     check_echo("function f() = $x; echo(f($x = 5), let ($x = 6) f());", &["5, 6"]);
     check_echo("for ($i = [1:2]) echo($i); echo(is_undef($i));", &["1", "2", "true"]);
     check_echo("translate([1, 0, 0], $fn = 9) echo($fn); echo($fn);", &["9", "0"]);
@@ -50,8 +60,14 @@ fn children_are_chosen_by_number() {
     let module = "module m() { children(1); echo(\"--\"); children([0, 2]); children([0:1]); children(); }";
     let script = format!("{module} m() {{ echo(0); echo(1); echo(2); }}");
     check_echo(&script, &["1", "\"--\"", "0", "2", "0", "1", "0", "1", "2"]);
-    check_echo("module m() { echo($children); } m(); m() cube(); m() { cube(); sphere(); x = 1; }", &["0", "1", "2"]);
-    check_echo("module outer() { inner() children(); } module inner() { children(); } outer() echo(\"deep\");", &["\"deep\""]);
+    check_echo(
+        "module m() { echo($children); } m(); m() cube(); m() { cube(); sphere(); x = 1; }",
+        &["0", "1", "2"],
+    );
+    check_echo(
+        "module outer() { inner() children(); } module inner() { children(); } outer() echo(\"deep\");",
+        &["\"deep\""],
+    );
     check_echo("module m() for (i = [0:1]) { $i = i; children(); } x = 10; m() echo(x + $i);", &["10", "11"]);
     check_echo("module b() children(); module a() { b() echo($children); } a() { cube(); cube(); }", &["2"]);
 }
@@ -78,12 +94,19 @@ fn arguments_find_their_parameters() {
 #[test]
 fn using_brings_definitions_and_including_everything() {
     let check = |text: &str, expected: &[&str]| check_echo_with(&[LIB, SECOND], text, expected);
-    check("use <lib.scad>\n$fn = 50; m() echo($fn); echo(lf(), is_undef(w));", &["\"m\", 7, 3", "7", "3, true"]);
+    check(
+        "use <lib.scad>\n$fn = 50; m() echo($fn); echo(lf(), is_undef(w));",
+        &["\"m\", 7, 3", "7", "3, true"],
+    );
     check("use <lib.scad>\nuse <second.scad>\ndup(); echo(two());", &["\"second\"", "6"]);
     check("use <lib.scad>\nmodule dup() echo(\"own\"); dup();", &["\"own\""]);
     check("include <lib.scad>\nw = 4; m(); echo(lf());", &["\"never\"", "\"m\", 7, 4", "4"]);
     check_echo_with(&[("list.txt", "1, 2,\n3")], "x = [ include <list.txt> ]; echo(x);", &["[1, 2, 3]"]);
-    check_echo_with(&[("a", "use <b>\nfunction a() = b();"), ("b", "use <a>\nfunction b() = 1; function c() = a();")], "use <b>\necho(c());", &["1"]);
+    check_echo_with(
+        &[("a", "use <b>\nfunction a() = b();"), ("b", "use <a>\nfunction b() = 1; function c() = a();")],
+        "use <b>\necho(c());",
+        &["1"],
+    );
 }
 
 #[test]
