@@ -166,8 +166,11 @@ impl Lexer<'_> {
             self.at += word;
             self.push(TokenKind::Number(value), start);
         } else if number > 0 && number >= word {
-            let value = rest[..number].parse().unwrap_or(f64::NAN);
+            let value: f64 = rest[..number].parse().unwrap_or(f64::NAN);
             self.at += number;
+            if !value.is_finite() {
+                self.complain(start, "this number is too large".to_owned());
+            }
             self.push(TokenKind::Number(value), start);
         } else {
             self.at += word;

@@ -35,6 +35,9 @@ pub(super) const TABLE: &[Builtin] = &[
     function_row("is_list", &["value"], "Whether the value is a list.", |_, a| {
         test(a, |value| matches!(value, Value::List(_)))
     }),
+    function_row("is_object", &["value"], "Whether the value is an object; there are none yet.", |_, a| {
+        test(a, |_| false)
+    }),
     function_row("is_function", &["value"], "Whether the value is a function.", |_, a| {
         test(a, |value| matches!(value, Value::Function(_)))
     }),

@@ -7,7 +7,7 @@ use crate::script::ast::{
     Binding, Block, Home, ModuleCall, ModuleId, Room, Slot, Statement, StatementId, StatementKind, Target,
     UnitId,
 };
-use crate::script::builtins::{Action, BuiltinKind};
+use crate::script::builtins::Action;
 use crate::script::diagnostic::Span;
 use crate::script::report::Complaint;
 use crate::script::stack::with_room;
@@ -197,9 +197,7 @@ impl<'p> Machine<'p> {
                 self.specials.restore(mark);
                 return Ok(made);
             }
-            _ if builtin.kind == BuiltinKind::Missing => {
-                return Err(self.error(span, format!("ogee does not have {name}() yet")));
-            }
+            (_, Action::Missing) => return Err(self.missing(span, name)),
             _ => {}
         }
         if call.children.statements.is_empty() {

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 /// Limits that are met soon.
 fn tight() -> Options {
-    Options { max_steps: 1_000_000, max_bytes: 64 << 20, ..Options::default() }
+    Options { max_steps: 1_000_000, max_depth: 5_000, max_bytes: 64 << 20, ..Options::default() }
 }
 
 #[track_caller]

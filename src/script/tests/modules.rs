@@ -267,11 +267,41 @@ fn files_come_from_the_host() {
 }
 
 #[test]
+fn deep_recursion_makes_deep_recipes() {
+    let chain =
+        |n: u32| format!("module r(n) if (n > 0) {{ cube(); translate([2, 0, 0]) r(n - 1); }} r({n});");
+    assert_eq!(made(&chain(900)).recipe.dimension(), Some(Dimension::Three));
+    let mut host = Memory::default();
+    assert_eq!(host.run(&chain(5000)).map(|_| ()), Err(Failure::Limit));
+    assert!(host.messages[0].text.contains("operations within each other"), "{:?}", host.messages[0].text);
+}
+
+#[test]
+fn options_that_do_nothing_are_named() {
+    check_complaint(
+        Severity::Warning,
+        "color(alpha = 0.5) cube();",
+        "alpha needs a colour",
+        "color(alpha = 0.5)",
+    );
+    check_complaint(Severity::Warning, "sphere(1, $fa = 0.001);", "$fa", "sphere(1, $fa = 0.001)");
+    check_complaint(
+        Severity::Warning,
+        "linear_extrude(1, segments = 3) square();",
+        "segments",
+        "linear_extrude(1, segments = 3)",
+    );
+}
+
+#[test]
 fn what_is_missing_is_named() {
-    for name in builtins().filter(|b| b.kind == BuiltinKind::Missing).map(|b| b.name) {
+    for builtin in builtins().filter(|builtin| builtin.is_missing()) {
+        let name = builtin.name;
+        let script =
+            if builtin.kind == BuiltinKind::Module { format!("{name}();") } else { format!("x = {name}();") };
         check_complaint(
             Severity::Error,
-            &format!("{name}();"),
+            &script,
             &format!("ogee does not have {name}() yet"),
             &format!("{name}()"),
         );
