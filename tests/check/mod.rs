@@ -1,10 +1,8 @@
 //! A checker of meshes that trusts nobody: connectivity counted afresh, volume on integers, crossings by exact
 //! predicates.
 
-mod crossing;
+pub(crate) mod crossing;
 mod pairs;
-
-pub(crate) use crossing::{Crossings, crossings};
 
 use crate::oracle::exact::{Int, Lattice, cross, dot};
 use crate::oracle::surface::Union;

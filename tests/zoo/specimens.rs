@@ -15,6 +15,8 @@ pub(crate) struct Specimen {
     pub(crate) tree: Tree,
     pub(crate) operands: Vec<Mesh>,
     pub(crate) expected: Expected,
+    /// Rounding the positions of a right result may fold slivers over each other: crossings are counted, not judged.
+    pub(crate) may_fold: bool,
 }
 
 /// What is known of a result.
@@ -35,11 +37,15 @@ impl Specimen {
         genus: i64,
     ) -> Specimen {
         let expected = Expected::Known { volume, within: 1e-12, components, genus };
-        Specimen { name: name.to_owned(), tree, operands, expected }
+        Specimen { name: name.to_owned(), tree, operands, expected, may_fold: false }
     }
 
     fn asked(name: String, tree: Tree, operands: Vec<Mesh>) -> Specimen {
-        Specimen { name, tree, operands, expected: Expected::Oracle }
+        Specimen { name, tree, operands, expected: Expected::Oracle, may_fold: false }
+    }
+
+    fn folding(self) -> Specimen {
+        Specimen { may_fold: true, ..self }
     }
 
     fn within(mut self, error: f64) -> Specimen {
@@ -322,11 +328,11 @@ fn gear() -> Mesh {
     prism(&outline, 0.0, 0.2)
 }
 
-/// Ninety unit cubes in random attitudes, all with their centre or all with a corner at the origin.
-pub(crate) fn turned_cubes(corner: f64) -> Vec<Mesh> {
+/// Unit cubes in random attitudes, all with their centre or all with a corner at the origin.
+pub(crate) fn turned_cubes(corner: f64, count: usize) -> Vec<Mesh> {
     let mut random = SplitMix::new(90);
     let block = cube(corner, corner, corner, 1.0);
-    (0..90)
+    (0..count)
         .map(|_| {
             let axis = Vec3::from_array([0; 3].map(|_| random.unit() - 0.5));
             mapped(&block, &about(axis, std::f64::consts::TAU * random.unit()))
