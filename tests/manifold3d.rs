@@ -2,6 +2,8 @@
 //! and genus exactly. Where a record says that manifold3d is wrong, the comparison is with what is right, known by hand
 //! or from the oracle.
 
+#![allow(clippy::print_stdout, reason = "tests say how much they did")]
+
 #[allow(dead_code, reason = "each test program uses its part")]
 mod check;
 #[allow(dead_code, reason = "each test program uses its part")]

@@ -127,7 +127,9 @@ pub(crate) fn copies() -> Vec<Specimen> {
     let skew: Vec<Mesh> = skew.collect();
     // All of them hold their common centre, so the union is a star: one piece without handles.
     all.push(
-        Specimen::known("30 cubes 1e-9 rad apart on a skew axis", union(30), skew, 1.0, 1, 0).within(1e-7),
+        Specimen::known("30 cubes 1e-9 rad apart on a skew axis", union(30), skew, 1.0, 1, 0)
+            .within(1e-7)
+            .folding(),
     );
     all
 }
@@ -244,7 +246,7 @@ pub(crate) fn sponge(depth: u32, genus: i64) -> Specimen {
 }
 
 /// A thousand cubes added one by one, then taken away again: themselves, or a smaller one out of each.
-fn grids() -> Vec<Specimen> {
+pub(crate) fn grids() -> Vec<Specimen> {
     let cells = || (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(f64::from));
     let added = || cells().map(|[x, y, z]| cube(x, y, z, 1.0));
     let smaller = cells().map(|[x, y, z]| cube(x + 0.25, y + 0.25, z + 0.25, 0.5));
@@ -367,7 +369,7 @@ pub(crate) fn terrain(n: u32, domes: u32) -> (Mesh, Vec<Mesh>) {
 /// Walls down to z = 0 and a bottom fanned about its middle.
 fn close_below(ground: &mut Mesh, n: u32) {
     let row = n + 1;
-    let south = (0..n).map(|i| i);
+    let south = 0..n;
     let east = (0..n).map(|j| j * row + n);
     let north = (1..=n).rev().map(|i| n * row + i);
     let west = (1..=n).rev().map(|j| j * row);
