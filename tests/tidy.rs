@@ -12,6 +12,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("libm", &["math"]),
     ("png", &["io/png.rs"]),
     ("rayon", &["par.rs"]),
+    ("robust", &["numeric/predicates.rs"]),
     ("serde_json", &["io", "cli"]),
     ("siphasher", &["numeric/hash.rs"]),
     ("spade", &["polygon/triangulate.rs"]),

@@ -48,9 +48,9 @@ fn candidates(scene: &Scene) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
     for (i, j) in pairs {
         if i == j {
-            let own = Part::of(scene, i, Aabb::EMPTY.union(boxes[i as usize]));
+            let own = Part::of(scene, i, boxes[i as usize]);
             own.bvh.self_pairs(&own.boxes, |a, b| {
-                found.push([own.triangles[a as usize], own.triangles[b as usize]])
+                found.push([own.triangles[a as usize], own.triangles[b as usize]]);
             });
         } else {
             let overlap = boxes[i as usize].intersection(boxes[j as usize]);

@@ -3,6 +3,22 @@
 //! A [`Csg`] says how a shape is made; it holds no mesh it has cooked. Recipes are shared freely (`Arc`), compare by
 //! value, and know whether they describe a plane region or a solid.
 
+mod arena;
+mod bounds;
+mod build;
+mod flat;
+mod frame;
+mod leaf;
+mod plan;
+mod print;
+mod solve;
+
+pub use bounds::bounds;
+pub use build::{
+    BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, build, build_with_progress,
+};
+pub use print::print;
+
 use crate::boolean::Op;
 use crate::math::{Affine3, Vec2, Vec3};
 use crate::mesh::Mesh;
@@ -127,13 +143,44 @@ pub enum Dimension {
 impl Csg {
     /// The dimension of the shape; `None` where there is no leaf. Of mixed children the first one decides.
     pub fn dimension(&self) -> Option<Dimension> {
+        arena::Arena::new(self).root().dimension
+    }
+
+    /// The recipes this one is made of.
+    pub fn children(&self) -> &[Arc<Csg>] {
         match self {
-            Csg::Nothing => None,
-            Csg::Flat(_) => Some(Dimension::Two),
-            Csg::Body(_) | Csg::LinearExtrude { .. } | Csg::RotateExtrude { .. } => Some(Dimension::Three),
-            Csg::Transform { child, .. } | Csg::Color { child, .. } => child.dimension(),
-            Csg::Combine { children, .. } | Csg::Hull { children } => {
-                children.iter().find_map(|child| child.dimension())
+            Csg::Nothing | Csg::Flat(_) | Csg::Body(_) => &[],
+            Csg::Transform { child, .. }
+            | Csg::Color { child, .. }
+            | Csg::LinearExtrude { child, .. }
+            | Csg::RotateExtrude { child, .. } => std::slice::from_ref(child),
+            Csg::Combine { children, .. } | Csg::Hull { children } => children,
+        }
+    }
+
+    /// Takes out the children whose own children might be theirs alone.
+    fn take_children(&mut self) -> Vec<Arc<Csg>> {
+        match self {
+            Csg::Nothing | Csg::Flat(_) | Csg::Body(_) => Vec::new(),
+            Csg::Transform { child, .. }
+            | Csg::Color { child, .. }
+            | Csg::LinearExtrude { child, .. }
+            | Csg::RotateExtrude { child, .. } => {
+                let is_chain = Arc::get_mut(child).is_some_and(|child| !child.children().is_empty());
+                if is_chain { vec![std::mem::replace(child, Arc::new(Csg::Nothing))] } else { Vec::new() }
+            }
+            Csg::Combine { children, .. } | Csg::Hull { children } => std::mem::take(children),
+        }
+    }
+}
+
+/// Recipes may be nested deeper than the stack allows a drop to be.
+impl Drop for Csg {
+    fn drop(&mut self) {
+        let mut pending = self.take_children();
+        while let Some(child) = pending.pop() {
+            if let Some(mut child) = Arc::into_inner(child) {
+                pending.append(&mut child.take_children());
             }
         }
     }

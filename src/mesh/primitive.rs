@@ -4,6 +4,7 @@
 
 use super::{Mesh, Solid};
 use crate::math::{Vec3, unit_circle};
+use crate::polygon::triangulate;
 use std::fmt;
 
 /// A mesh that would have more triangles than 32-bit half-edges can number.
@@ -91,12 +92,12 @@ pub fn frustum(heights: [f64; 2], radii: [f64; 2], fragments: u32) -> Result<Sol
     match radii {
         [0.0, top] => {
             push_ring(&mut mesh, top, high, fragments);
-            push_convex(&mut mesh, (0..fragments).collect());
+            mesh.triangles.extend(triangulate::convex((0..fragments).collect()));
             push_tip(&mut mesh, low, (0..fragments).rev());
         }
         [bottom, 0.0] => {
             push_ring(&mut mesh, bottom, low, fragments);
-            push_convex(&mut mesh, (0..fragments).rev().collect());
+            mesh.triangles.extend(triangulate::convex((0..fragments).rev().collect()));
             push_tip(&mut mesh, high, 0..fragments);
         }
         [bottom, top] => {
@@ -135,7 +136,7 @@ fn push_ring(mesh: &mut Mesh, radius: f64, height: f64, fragments: u32) {
 
 /// Joins `rings` rings, stored from the bottom up, by quads, and closes both ends.
 fn close_rings(mesh: &mut Mesh, fragments: u32, rings: u32) {
-    push_convex(mesh, (0..fragments).rev().collect());
+    mesh.triangles.extend(triangulate::convex((0..fragments).rev().collect()));
     for ring in 1..rings {
         let (below, above) = ((ring - 1) * fragments, ring * fragments);
         for i in 0..fragments {
@@ -144,7 +145,7 @@ fn close_rings(mesh: &mut Mesh, fragments: u32, rings: u32) {
             mesh.triangles.push([below + i, above + next, above + i]);
         }
     }
-    push_convex(mesh, ((rings - 1) * fragments..rings * fragments).collect());
+    mesh.triangles.extend(triangulate::convex(((rings - 1) * fragments..rings * fragments).collect()));
 }
 
 /// Joins a ring, given in the direction in which the sides run along it, to a vertex on the axis.
@@ -153,17 +154,6 @@ fn push_tip(mesh: &mut Mesh, height: f64, ring: impl Iterator<Item = u32> + Clon
     mesh.positions.push(Vec3::new(0.0, 0.0, height));
     let next = ring.clone().cycle().skip(1);
     mesh.triangles.extend(ring.zip(next).map(|(a, b)| [a, b, tip]));
-}
-
-/// Triangulates a convex polygon by cutting off every other vertex, round after round, so that no vertex collects many
-/// triangles.
-fn push_convex(mesh: &mut Mesh, mut ring: Vec<u32>) {
-    while ring.len() >= 3 {
-        let corner = |i: usize| ring[i % ring.len()];
-        let ears = (0..ring.len() - 1).step_by(2);
-        mesh.triangles.extend(ears.map(|i| [corner(i), corner(i + 1), corner(i + 2)]));
-        ring = ring.iter().copied().step_by(2).collect();
-    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,10 @@
 
 mod combine;
 pub mod exact;
+mod hull;
 mod region;
 pub mod triangulate;
 
 pub use combine::{FillRule, combine};
+pub use hull::convex_hull;
 pub use region::{Region, RegionError};

@@ -5,8 +5,9 @@
 
 use super::Region;
 use crate::math::Vec2;
+use crate::numeric::{Unfit, fitted};
 use spade::handles::{FixedDirectedEdgeHandle, FixedVertexHandle};
-use spade::{ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulation};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::fmt;
 
 /// Why a polygon has no triangulation. Vertices count from 0 through all contours, in order.
@@ -121,6 +122,19 @@ pub fn region(region: &Region) -> Result<(Vec<Vec2>, Vec<[u32; 3]>), Triangulati
     Ok((points, triangles))
 }
 
+/// Triangulates a strictly convex polygon by cutting off every other corner, round after round, so that no corner
+/// collects many triangles.
+pub fn convex(mut corners: Vec<u32>) -> Vec<[u32; 3]> {
+    let mut triangles = Vec::with_capacity(corners.len());
+    while corners.len() >= 3 {
+        let corner = |i: usize| corners[i % corners.len()];
+        let ears = (0..corners.len() - 1).step_by(2);
+        triangles.extend(ears.map(|i| [corner(i), corner(i + 1), corner(i + 2)]));
+        corners = corners.iter().copied().step_by(2).collect();
+    }
+    triangles
+}
+
 /// Appends the edges of a closed contour of `count` vertices that start at `first`.
 fn push_contour(edges: &mut Vec<[u32; 2]>, first: usize, count: usize) -> Result<(), TriangulationError> {
     if count < 3 {
@@ -153,7 +167,7 @@ impl Arrangement {
     fn new(points: &[Vec2], edges: &[[u32; 2]]) -> Result<Arrangement, TriangulationError> {
         let (places, place_of) = places(&scaled(points)?);
         let mut delaunay = Delaunay::try_bulk_load_cdt(places, Vec::new(), |_| ())
-            .map_err(|error| insertion_error(error, points))?;
+            .expect("fitted coordinates are in the range of spade");
         let mut handles: Vec<(FixedDirectedEdgeHandle, u32)> = Vec::with_capacity(edges.len());
         for (vertex, edge) in edges.iter().enumerate() {
             let [from, to] = edge.map(|v| FixedVertexHandle::from_index(place_of[v as usize] as usize));
@@ -234,40 +248,13 @@ impl Arrangement {
     }
 }
 
-/// The points times a power of two that puts the largest coordinate at the top of the range in which spade's
-/// predicates are exact.
+/// The points at the scale at which spade's predicates are exact; its range is the same as theirs.
 fn scaled(points: &[Vec2]) -> Result<Vec<Vec2>, TriangulationError> {
-    if let Some(vertex) = points.iter().position(|p| !p.is_finite()) {
-        return Err(TriangulationError::NonFinite { vertex });
-    }
-    let largest = points.iter().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
-    let exponent = (largest.to_bits() >> 52) as i32 - 1023;
-    // Two steps, since the factor itself may be out of range.
-    let steps = [(199 - exponent) / 2, 199 - exponent - (199 - exponent) / 2].map(power_of_two);
-    let scale = |p: &Vec2| *p * steps[0] * steps[1];
-    let back = |p: Vec2| p / steps[1] / steps[0];
-    let scaled: Vec<Vec2> = points.iter().map(scale).collect();
-    match points.iter().zip(&scaled).position(|(p, &s)| back(s) != *p) {
-        Some(vertex) => Err(TriangulationError::Range { vertex }),
-        None => Ok(scaled),
-    }
-}
-
-/// 2 to the power of `exponent`, which must be that of a normal number.
-fn power_of_two(exponent: i32) -> f64 {
-    f64::from_bits(((exponent + 1023) as u64) << 52)
-}
-
-fn insertion_error(error: InsertionError, points: &[Vec2]) -> TriangulationError {
-    let smallest = |p: &Vec2| {
-        let nonzero = |c: f64| if c == 0.0 { f64::INFINITY } else { c.abs() };
-        nonzero(p.x).min(nonzero(p.y))
-    };
-    let by_size = |&a: &usize, &b: &usize| smallest(&points[a]).total_cmp(&smallest(&points[b]));
-    let vertex = (0..points.len()).min_by(by_size).unwrap_or_default();
-    match error {
-        InsertionError::NAN => TriangulationError::NonFinite { vertex },
-        InsertionError::TooSmall | InsertionError::TooLarge => TriangulationError::Range { vertex },
+    let coordinates: Vec<[f64; 2]> = points.iter().map(Vec2::to_array).collect();
+    match fitted(&coordinates) {
+        Ok(fitted) => Ok(fitted.into_iter().map(Vec2::from).collect()),
+        Err(Unfit::NonFinite { point }) => Err(TriangulationError::NonFinite { vertex: point }),
+        Err(Unfit::Range { point }) => Err(TriangulationError::Range { vertex: point }),
     }
 }
 

@@ -1,7 +1,8 @@
 use super::SweepError;
 use crate::math::{Vec2, Vec3};
 use crate::mesh::{Mesh, Topology};
-use crate::polygon::{Region, triangulate};
+use crate::polygon::Region;
+use crate::polygon::triangulate::{self, TriangulationError};
 
 /// A region made ready to be swept: triangles, and the edges they leave open, the inside on their left. Every vertex
 /// has one open edge that starts at it and one that ends there.
@@ -9,11 +10,24 @@ pub(super) struct Profile {
     pub(super) points: Vec<Vec2>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) border: Vec<[u32; 2]>,
+    /// Whether the triangles lie side by side. They do not where rounding made contours cross, see [`fans`].
+    pub(super) sound: bool,
 }
 
 impl Profile {
     pub(super) fn new(region: &Region) -> Result<Profile, SweepError> {
-        let (points, triangles) = triangulate::region(region)?;
+        let (points, triangles, sound) = match triangulate::region(region) {
+            Ok((points, triangles)) => (points, triangles, true),
+            Err(
+                TriangulationError::Crossing { .. }
+                | TriangulationError::RepeatedVertex { .. }
+                | TriangulationError::Winding,
+            ) => {
+                let (points, triangles) = fans(region);
+                (points, triangles, false)
+            }
+            Err(error) => return Err(error.into()),
+        };
         let topology = Topology::new(&triangles);
         let side = |h: u32| {
             let triangle = triangles[h as usize / 3];
@@ -21,7 +35,7 @@ impl Profile {
         };
         let open = (0..topology.len() as u32).filter(|&h| topology.twin(h) == Topology::NONE);
         let border = open.map(side).collect();
-        Ok(Profile { points, triangles, border })
+        Ok(Profile { points, triangles, border, sound })
     }
 
     /// For each vertex, the number of the border loop it is on, and how many loops there are.
@@ -43,6 +57,18 @@ impl Profile {
         }
         (loop_of, count)
     }
+}
+
+/// A fan of triangles over each contour. They overlap, but count to one inside and to zero outside, so that what is swept
+/// has the right winding numbers everywhere and the exact booleans can clean it.
+fn fans(region: &Region) -> (Vec<Vec2>, Vec<[u32; 3]>) {
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    for contour in region.contours() {
+        let first = points.len() as u32;
+        points.extend_from_slice(contour);
+        triangles.extend((first + 2..points.len() as u32).map(|v| [first, v - 1, v]));
+    }
+    (points, triangles)
 }
 
 /// Upper bound of the triangles that sweeping `region` over `layers` makes, ends included.

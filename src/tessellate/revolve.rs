@@ -1,6 +1,6 @@
 use super::SweepError;
 use super::profile::{Profile, check_finite, most_triangles, push_quad};
-use crate::math::{Vec3, degrees, sin_cos_degrees};
+use crate::math::{Vec2, Vec3, degrees, sin_cos_degrees};
 use crate::mesh::{Mesh, Solid, TooLarge};
 use crate::polygon::Region;
 
@@ -80,15 +80,17 @@ pub fn rotate_extrude(region: &Region, sweep: &RotateSweep) -> Result<Solid, Swe
 fn turned(profile: &Profile, sweep: &RotateSweep) -> Mesh {
     let directions = sweep.directions();
     let mut mesh = Mesh::default();
+    // Overlapping ends could not share their poles: they would meet along the axis more than twice.
+    let is_pole = |point: Vec2| profile.sound && point.x == 0.0;
     // The vertices of a profile vertex at all steps: one for all on the axis, one for each elsewhere.
     let mut first = Vec::with_capacity(profile.points.len());
     for &point in &profile.points {
         first.push(mesh.positions.len() as u32);
-        let around: &[(f64, f64)] = if point.x == 0.0 { &[(0.0, 1.0)] } else { &directions };
+        let around: &[(f64, f64)] = if is_pole(point) { &[(0.0, 1.0)] } else { &directions };
         let place = |&(sin, cos): &(f64, f64)| Vec3::new(point.x * cos, point.x * sin, point.y);
         mesh.positions.extend(around.iter().map(place));
     }
-    let on_axis = |v: u32| profile.points[v as usize].x == 0.0;
+    let on_axis = |v: u32| is_pole(profile.points[v as usize]);
     let vertex = |v: u32, step: u32| first[v as usize] + if on_axis(v) { 0 } else { step };
     for step in 0..sweep.fragments {
         let next = (step + 1) % directions.len() as u32;
@@ -98,7 +100,10 @@ fn turned(profile: &Profile, sweep: &RotateSweep) -> Mesh {
                 (true, false) => mesh.triangles.push([first[a as usize], vertex(b, next), vertex(b, step)]),
                 (false, true) => mesh.triangles.push([vertex(a, step), vertex(a, next), first[b as usize]]),
                 (false, false) => {
-                    push_quad(&mut mesh, [vertex(a, step), vertex(a, next), vertex(b, next), vertex(b, step)])
+                    push_quad(
+                        &mut mesh,
+                        [vertex(a, step), vertex(a, next), vertex(b, next), vertex(b, step)],
+                    );
                 }
             }
         }
@@ -115,7 +120,7 @@ fn turned(profile: &Profile, sweep: &RotateSweep) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Vec2, sin};
+    use crate::math::sin;
     use crate::mesh::Defects;
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -185,6 +190,18 @@ mod tests {
             check(&region, RotateSweep { angle: -TAU, start: 1.0, fragments: 3 });
             check(&region, RotateSweep { angle: 1.5 * PI, start: -0.3, fragments: 7 });
             check(&region, RotateSweep { angle: -FRAC_PI_2, start: 0.0, fragments: 1 });
+        }
+    }
+
+    #[test]
+    fn contours_that_cross_keep_their_winding_numbers() {
+        let twice = contour(&[(0., 0.), (2., 0.), (0., 2.)]);
+        let hole = contour(&[(0., 0.), (0., 2.), (0., 3.), (2., 0.)]);
+        let crossing = Region::assume(vec![twice.clone(), twice.clone(), hole.clone(), hole]);
+        for sweep in [FULL, RotateSweep { angle: 2.0, ..FULL }] {
+            let solid = rotate_extrude(&crossing, &sweep).unwrap();
+            assert!(Defects::of(solid.mesh()).is_solid());
+            assert!(volume(solid.mesh()) < 0.0, "more hole than not");
         }
     }
 

@@ -1,0 +1,173 @@
+use super::{Body, Csg, Flat, LinearSweep, RotateSweep};
+use crate::boolean::Op;
+use crate::math::{Affine3, Vec2, Vec3, degrees};
+use crate::mesh::Mesh;
+use std::fmt::Write;
+
+/// The recipe as a script of plain calls, one a line, children indented: no variables, no loops, all numbers in full.
+///
+/// Read back by the script language it makes the same shape. A symmetric difference, which OpenSCAD does not have, is
+/// written `symmetric_difference()`.
+pub fn print(recipe: &Csg) -> String {
+    let mut text = String::new();
+    // What is still to be written: recipes, and the ends of groups.
+    let mut stack = vec![(0, Some(recipe))];
+    while let Some((depth, recipe)) = stack.pop() {
+        text.push_str(&"  ".repeat(depth.min(DEEPEST_INDENT)));
+        let Some(recipe) = recipe else {
+            text.push_str("}\n");
+            continue;
+        };
+        text.push_str(&call(recipe));
+        if matches!(recipe, Csg::Nothing | Csg::Flat(_) | Csg::Body(_)) {
+            text.push_str(";\n");
+        } else {
+            text.push_str(" {\n");
+            stack.push((depth, None));
+            stack.extend(recipe.children().iter().rev().map(|child| (depth + 1, Some(&**child))));
+        }
+    }
+    text
+}
+
+/// Beyond this depth lines are indented no further, so that the text does not grow with the square of the depth.
+const DEEPEST_INDENT: usize = 40;
+
+/// The call that makes a node, without its children.
+fn call(recipe: &Csg) -> String {
+    match recipe {
+        Csg::Nothing => "group()".to_owned(),
+        Csg::Flat(flat) => flat_call(flat),
+        Csg::Body(body) => body_call(body),
+        Csg::Transform { map, .. } => format!("multmatrix({})", matrix(map)),
+        Csg::Color { color, .. } => {
+            format!("color({})", list(color.iter().map(|&c| shortest(c))))
+        }
+        Csg::Combine { op, .. } => match op {
+            Op::Union => "union()",
+            Op::Intersection => "intersection()",
+            Op::Difference => "difference()",
+            Op::SymmetricDifference => "symmetric_difference()",
+        }
+        .to_owned(),
+        Csg::Hull { .. } => "hull()".to_owned(),
+        Csg::LinearExtrude { sweep, .. } => linear_call(sweep),
+        Csg::RotateExtrude { sweep, .. } => rotate_call(sweep),
+    }
+}
+
+fn flat_call(flat: &Flat) -> String {
+    match flat {
+        Flat::Rectangle { min, max } if *min == Vec2::ZERO => format!("square({})", vec2(*max)),
+        Flat::Rectangle { min, max } => {
+            polygon_call(&[vec![*min, Vec2::new(max.x, min.y), *max, Vec2::new(min.x, max.y)]])
+        }
+        Flat::Circle { radius, fragments } => format!("circle(r = {}, $fn = {fragments})", number(*radius)),
+        Flat::Polygon { contours } => polygon_call(contours),
+    }
+}
+
+fn polygon_call(contours: &[Vec<Vec2>]) -> String {
+    let points = list(contours.iter().flatten().map(|&p| vec2(p)));
+    let mut first = 0;
+    let paths = contours.iter().map(|contour| {
+        first += contour.len();
+        list((first - contour.len()..first).map(|i| i.to_string()))
+    });
+    format!("polygon(points = {points}, paths = {})", list(paths))
+}
+
+fn body_call(body: &Body) -> String {
+    match body {
+        Body::Cuboid { min, max } if *min == Vec3::ZERO => format!("cube({})", vec3(*max)),
+        // Sizes would be rounded: the corners themselves say the same without loss.
+        Body::Cuboid { min, max } => mesh_call(&cuboid_corners(*min, *max)),
+        Body::Sphere { radius, fragments } => format!("sphere(r = {}, $fn = {fragments})", number(*radius)),
+        Body::Frustum { heights: [low, high], radii: [bottom, top], fragments } => {
+            let sizes = format!("r1 = {}, r2 = {}, $fn = {fragments}", number(*bottom), number(*top));
+            let height = number(high - low);
+            if *low == 0.0 {
+                format!("cylinder(h = {height}, {sizes})")
+            } else if *low == -*high {
+                format!("cylinder(h = {height}, {sizes}, center = true)")
+            } else {
+                format!("translate([0, 0, {}]) cylinder(h = {height}, {sizes})", number(*low))
+            }
+        }
+        Body::Mesh(mesh) => mesh_call(mesh),
+    }
+}
+
+/// The mesh of a box; without triangles for one that holds nothing.
+fn cuboid_corners(min: Vec3, max: Vec3) -> Mesh {
+    crate::mesh::cuboid(min, max).into_mesh()
+}
+
+/// Faces run clockwise seen from outside, as the language has them.
+fn mesh_call(mesh: &Mesh) -> String {
+    let points = list(mesh.positions.iter().map(|&p| vec3(p)));
+    let faces = list(mesh.triangles.iter().map(|&[a, b, c]| format!("[{a}, {c}, {b}]")));
+    format!("polyhedron(points = {points}, faces = {faces})")
+}
+
+fn linear_call(sweep: &LinearSweep) -> String {
+    let LinearSweep { vector, center, twist, slices, scale } = sweep;
+    let mut text = String::from("linear_extrude(");
+    let direction = if vector.truncate() == Vec2::ZERO {
+        format!("height = {}", number(vector.z))
+    } else {
+        format!("v = {}", vec3(*vector))
+    };
+    write!(text, "{direction}, center = {center}, twist = {}, ", number(degrees(*twist))).expect("a string");
+    write!(text, "slices = {slices}, scale = {})", vec2(*scale)).expect("a string");
+    text
+}
+
+fn rotate_call(sweep: &RotateSweep) -> String {
+    let (angle, start) = (degrees(sweep.angle), degrees(sweep.start));
+    // The language takes the number of steps of a full turn, and a share of it for a part of one.
+    let around = (f64::from(sweep.fragments) * 360.0 / angle.abs().min(360.0)).floor();
+    let around = if around.is_finite() { around } else { f64::from(sweep.fragments) };
+    format!("rotate_extrude(angle = {}, start = {}, $fn = {})", number(angle), number(start), number(around))
+}
+
+fn matrix(map: &Affine3) -> String {
+    let m = map.matrix3.transpose();
+    let rows = [m.x_axis, m.y_axis, m.z_axis].into_iter().zip(map.translation.to_array());
+    let row = |(row, shift): (Vec3, f64)| list(row.to_array().into_iter().chain([shift]).map(number));
+    list(rows.map(row).chain(["[0, 0, 0, 1]".to_owned()]))
+}
+
+fn vec2(v: Vec2) -> String {
+    list(v.to_array().into_iter().map(number))
+}
+
+fn vec3(v: Vec3) -> String {
+    list(v.to_array().into_iter().map(number))
+}
+
+fn list(items: impl Iterator<Item = String>) -> String {
+    format!("[{}]", items.collect::<Vec<_>>().join(", "))
+}
+
+fn number(value: f64) -> String {
+    if value.is_finite() { shortest(value + 0.0) } else { not_finite(value) }
+}
+
+/// The fewest digits that read back to the same bits, without a fraction for whole numbers.
+fn shortest(value: impl std::fmt::Debug) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// The language has no literals for these.
+fn not_finite(value: f64) -> String {
+    let text = if value.is_nan() {
+        "(0/0)"
+    } else if value > 0.0 {
+        "(1/0)"
+    } else {
+        "(-1/0)"
+    };
+    text.to_owned()
+}
