@@ -1,10 +1,10 @@
 use super::input::{Kind, Source};
-use super::model::Shape;
 use super::model::{self, Times};
 use super::output::Place;
 use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
 use super::terminal::Terminal;
+use crate::csg::Shape;
 use crate::io::{Format, png};
 use crate::math::Vec3;
 use crate::mesh::Mesh;
@@ -93,7 +93,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
 fn load(args: &Args, source: &Source, times: &mut Times, terminal: &Terminal) -> Result<Mesh, Stop> {
     match args.format.map_or_else(|| source.kind(), |format| Ok(Kind::Mesh(format)))? {
         Kind::Mesh(format) => source.mesh(format),
-        Kind::Script => match model::build(source, &args.script, times, terminal)? {
+        Kind::Script => match model::build(source, &args.script, false, times, terminal)?.shape {
             Shape::Solid(solid) => Ok(solid.into_mesh()),
             Shape::Region(_) => {
                 let reason =
