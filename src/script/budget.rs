@@ -11,6 +11,9 @@ const LEVELS_A_CALL: u32 = 64;
 /// Bytes of stack a level of calls takes, roughly.
 const STACK_A_CALL: usize = 4096;
 
+/// Steps between two looks at memory.
+const STEPS_A_LOOK: u64 = 256;
+
 /// Why an operation has no value.
 #[derive(Debug, PartialEq)]
 pub(super) enum Fault {
@@ -54,7 +57,7 @@ impl Budget {
         }
     }
 
-    /// Takes `steps` of those allowed, and looks at memory as well.
+    /// Takes `steps` of those allowed, and looks at memory every now and then.
     #[inline]
     pub(super) fn spend(&mut self, steps: u64) -> Result<(), Fault> {
         if self.steps_left < steps {
@@ -62,7 +65,7 @@ impl Budget {
             return Err(Fault::Limit(format!("the script takes more than {} steps", self.most_steps)));
         }
         self.steps_left -= steps;
-        self.reserve(0)
+        if self.steps_left % STEPS_A_LOOK < steps { self.reserve(0) } else { Ok(()) }
     }
 
     /// Whether `bytes` more may be taken.

@@ -107,6 +107,7 @@ fn statements_are_joined() {
     // A condition that fails and an echo take no place among the children, a loop without rounds does.
     check("difference() { if (false) cube(5); echo(1); cube(3); }", &cube(3.0));
     check("difference() { for (i = []) cube(5); cube(3); }", &Csg::Nothing);
+    check("difference() { { cube(2); cube(1); } }", &combine(Op::Difference, &[cube(2.0), cube(1.0)]));
     check("module none() {} difference() { none(); cube(4); }", &Csg::Nothing);
     check("intersection() { group(); cube(5); }", &combine(Op::Intersection, &[Csg::Nothing, cube(5.0)]));
     check(
