@@ -53,7 +53,7 @@ fn recorded() -> (BTreeMap<String, f64>, f64) {
 }
 
 /// Parts and handles, counted by hand: screw holes, spokes, windows.
-const COUNTED: [(&str, usize, u64); 12] = [
+const COUNTED: [(&str, usize, u64); 13] = [
     ("bin", 1, 0),
     ("bracket", 1, 4),
     ("chess", 2, 0),
@@ -65,6 +65,7 @@ const COUNTED: [(&str, usize, u64); 12] = [
     ("knot", 1, 1),
     ("menger", 1, 1409),
     ("nameplate", 1, 2),
+    ("perforated", 1, 85),
     ("vase", 1, 0),
 ];
 

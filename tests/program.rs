@@ -292,7 +292,9 @@ fn errors_point_and_leave_the_old_result() {
     }
     let typo = bench.run("check typo.scad --oneline").err;
     assert!(typo.contains(" in file typo.scad, line 2\n"), "{typo}");
-    for (script, part) in [("main", "gone.scad"), ("import", "line 2"), ("ring", "ring.scad")] {
+    for (script, part) in
+        [("main", "gone.scad"), ("import", "cut.stl: line 3: the file ends"), ("ring", "ring.scad")]
+    {
         let ran = bench.run(&format!("check {script}.scad"));
         assert!(ran.code == Some(0) || ran.code == Some(1), "{script}: {ran:?}");
         assert!(ran.err.contains(part), "{script}: {}", ran.err);

@@ -82,22 +82,25 @@ impl<'a> FileHost<'a> {
         }
         let found = places.iter().find_map(|folder| folder.join(name).canonicalize().ok());
         let path = found.ok_or_else(|| {
+            if Path::new(name).is_absolute() {
+                return "there is no such file".to_owned();
+            }
             let places: Vec<String> = places.iter().map(|folder| folder.display().to_string()).collect();
-            format!("there is no file `{name}` in {}", places.join(" or "))
+            format!("there is no such file in {}", places.join(" or "))
         })?;
         if self.allowed.iter().any(|folder| path.starts_with(folder)) {
             return Ok(path);
         }
         let folder = parent(&path);
         let hint = format!("--allow {} lets it", folder.display());
-        Err(format!("`{name}` is outside of the folders that the script may read; {hint}"))
+        Err(format!("it is outside of the folders that the script may read; {hint}"))
     }
 }
 
 impl Host for FileHost<'_> {
     fn script(&mut self, name: &str, from: &str) -> Result<Loaded, String> {
         let path = self.find(name, from)?;
-        self.load_file(&path).map_err(|reason| format!("`{name}`: {reason}"))
+        self.load_file(&path)
     }
 
     fn mesh(&mut self, name: &str, from: &str) -> Result<Arc<Mesh>, String> {
@@ -107,9 +110,8 @@ impl Host for FileHost<'_> {
         }
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let format = Format::from_ending(&ending)
-            .ok_or_else(|| format!("`{name}` cannot be imported: only {} can", mesh_endings()))?;
-        let bytes = read_file(&path).map_err(|reason| format!("`{name}`: {reason}"))?;
-        let mesh = formats::read_mesh(format, &bytes).map_err(|error| format!("`{name}`: {error}"))?;
+            .ok_or_else(|| format!("only files that end in {} can be read", mesh_endings()))?;
+        let mesh = formats::read_mesh(format, &read_file(&path)?).map_err(|error| error.to_string())?;
         let mesh = Arc::new(mesh);
         self.meshes.insert(path, Arc::clone(&mesh));
         Ok(mesh)
@@ -187,7 +189,7 @@ mod tests {
         let deep = host.script("deep/b.scad", &part).unwrap().name;
         assert_eq!(host.script("a.scad", &deep).unwrap().text, "main", "main before OPENSCADPATH");
         let error = host.script("c.scad", &part).unwrap_err();
-        assert!(error.contains("`c.scad`") && error.contains("part or") && error.contains("lib"), "{error}");
+        assert!(error.contains("part or") && error.contains("lib"), "{error}");
     }
 
     #[test]
@@ -227,7 +229,9 @@ mod tests {
         }
         assert!(host.script("a\0b", &main).is_err());
         assert!(host.mesh("a.stl", &main).unwrap_err().contains("line 2"));
-        assert!(host.mesh("a.svg", &main).unwrap_err().contains("only .obj, .stl, .off, .ply can"));
+        assert!(
+            host.mesh("a.svg", &main).unwrap_err().contains("only files that end in .obj, .stl, .off, .ply")
+        );
         let first = host.mesh("tri.off", &main).unwrap();
         assert!(Arc::ptr_eq(&first, &host.mesh("./tri.off", &main).unwrap()), "read once");
     }

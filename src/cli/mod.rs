@@ -1,7 +1,7 @@
 //! The program: paths, clock, environment, standard streams and progress live here and nowhere else.
 //!
 //! Each command is a file: what was typed (its `Args`), what is meant by it, and the doing. A new command is a new file
-//! and a row of [`Command`].
+//! and a row of `Command`.
 
 mod boolean;
 mod build;

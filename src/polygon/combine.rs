@@ -81,9 +81,10 @@ fn add_contour(
     }
 }
 
-/// The contours of a boundary, without vertices at which they run straight on.
+/// The contours of a boundary, without vertices at which one runs straight on and no other passes.
 fn walk(chart: &Chart, points: &Points, lines: &[Line], boundary: &[Boundary]) -> Vec<Vec<PointId>> {
     let next = followers(chart, points, lines, boundary);
+    let crowded = passed_twice(boundary);
     let mut walked = vec![false; boundary.len()];
     let mut contours = Vec::new();
     for first in 0..boundary.len() {
@@ -93,18 +94,23 @@ fn walk(chart: &Chart, points: &Points, lines: &[Line], boundary: &[Boundary]) -
             contour.push(boundary[edge].ends[0]);
             edge = next[edge] as usize;
         }
-        if !contour.is_empty() {
-            contours.push(without_straight_vertices(chart, points, &contour));
+        let count = contour.len();
+        let is_needed = |&i: &usize| {
+            let (before, after) = (contour[(i + count - 1) % count], contour[(i + 1) % count]);
+            crowded.binary_search(&contour[i]).is_ok()
+                || chart.orientation(points, before, contour[i], after) != 0
+        };
+        if count > 0 {
+            contours.push((0..count).filter(is_needed).map(|i| contour[i]).collect());
         }
     }
     contours
 }
 
-fn without_straight_vertices(chart: &Chart, points: &Points, contour: &[PointId]) -> Vec<PointId> {
-    let count = contour.len();
-    let turns = |&i: &usize| {
-        let (before, after) = (contour[(i + count - 1) % count], contour[(i + 1) % count]);
-        chart.orientation(points, before, contour[i], after) != 0
-    };
-    (0..count).filter(turns).map(|i| contour[i]).collect()
+/// The points, sorted, from which more than one boundary edge starts.
+fn passed_twice(boundary: &[Boundary]) -> Vec<PointId> {
+    let mut starts: Vec<PointId> = boundary.iter().map(|edge| edge.ends[0]).collect();
+    starts.sort_unstable();
+    let crowded = starts.chunk_by(|a, b| a == b).filter(|group| group.len() > 1);
+    crowded.map(|group| group[0]).collect()
 }

@@ -8,6 +8,9 @@ use super::value::Value;
 /// Levels of expression a level of calls may take, on average.
 const LEVELS_A_CALL: u32 = 64;
 
+/// Bytes of stack a level of calls takes, roughly.
+const STACK_A_CALL: usize = 4096;
+
 /// Why an operation has no value.
 #[derive(Debug, PartialEq)]
 pub(super) enum Fault {
@@ -80,6 +83,7 @@ impl Budget {
         if self.calls == self.most_calls {
             return Err(Fault::Limit(format!("calls are nested more than {} deep", self.most_calls)));
         }
+        self.reserve(STACK_A_CALL * self.calls as usize)?;
         self.calls += 1;
         Ok(())
     }
