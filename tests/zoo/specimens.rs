@@ -224,10 +224,10 @@ pub(crate) fn windings() -> Vec<Specimen> {
     ]
 }
 
-/// Many operands.
-pub(crate) fn crowds() -> Vec<Specimen> {
+/// Many operands; the grid of cubes has so many on each axis.
+pub(crate) fn crowds(side: u32) -> Vec<Specimen> {
     let mut all = vec![sponge(1, 5), sponge(2, 81), sponge(3, 1409)];
-    all.extend(grids());
+    all.extend(grids(side));
     all.extend([flush_cuts(), rods(0.0), rods(0.25)]);
     all
 }
@@ -245,26 +245,21 @@ pub(crate) fn sponge(depth: u32, genus: i64) -> Specimen {
     )
 }
 
-/// A thousand cubes added one by one, then taken away again: themselves, or a smaller one out of each.
-pub(crate) fn grids() -> Vec<Specimen> {
-    let cells = || (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(f64::from));
+/// A grid of cubes added one by one, then taken away again: themselves, or a smaller one out of each.
+pub(crate) fn grids(side: u32) -> Vec<Specimen> {
+    let count = side.pow(3);
+    let cells = || (0..count).map(move |i| [i % side, i / side % side, i / side / side].map(f64::from));
     let added = || cells().map(|[x, y, z]| cube(x, y, z, 1.0));
     let smaller = cells().map(|[x, y, z]| cube(x + 0.25, y + 0.25, z + 0.25, 0.5));
-    let tree = (1..2000).fold(Tree::Leaf(0), |sum, next| {
-        let op = if next < 1000 { Op::Union } else { Op::Difference };
+    let tree = (1..2 * count as usize).fold(Tree::Leaf(0), |sum, next| {
+        let op = if next < count as usize { Op::Union } else { Op::Difference };
         Tree::Node(op, vec![sum, Tree::Leaf(next)])
     });
-    let hollow = added().chain(smaller).collect();
+    let (twice, hollow) = (added().chain(added()).collect(), added().chain(smaller).collect());
+    let (volume, components) = (0.875 * f64::from(count), 1 + count as usize);
     vec![
-        Specimen::known(
-            "a grid of cubes added and removed",
-            tree.clone(),
-            added().chain(added()).collect(),
-            0.0,
-            0,
-            0,
-        ),
-        Specimen::known("a grid of cubes added and hollowed", tree, hollow, 875.0, 1001, 0),
+        Specimen::known("a grid of cubes added and removed", tree.clone(), twice, 0.0, 0, 0),
+        Specimen::known("a grid of cubes added and hollowed", tree, hollow, volume, components, 0),
     ]
 }
 
