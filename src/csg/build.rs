@@ -64,6 +64,10 @@ pub struct Report {
 }
 
 impl Report {
+    pub(super) fn skip(&mut self, leaves: u64) {
+        self.skipped = self.skipped.saturating_add(leaves);
+    }
+
     pub(super) fn note(&mut self, note: Note) {
         if !self.notes.contains(&note) {
             self.notes.push(note);

@@ -16,7 +16,7 @@ const TAPS: usize = 14;
 const BLOCK: usize = 4;
 
 /// How dark a corner gets.
-const STRENGTH: f64 = 2.6;
+const STRENGTH: f64 = 3.6;
 
 /// Sines of angles above the tangent plane that take no light: rounding must not darken flat faces.
 const LEVEL: f64 = 0.03;
