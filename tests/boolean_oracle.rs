@@ -82,10 +82,12 @@ fn a_right_kernel_passes() {
     }
 }
 
+type Spoil = fn(Mesh) -> Mesh;
+
 /// Kernels that are wrong in one way each are caught.
 #[test]
 fn wrong_kernels_are_caught() {
-    let spoil: [(&str, fn(Mesh) -> Mesh); 5] = [
+    let spoil: [(&str, Spoil); 5] = [
         ("loses a triangle", |mut mesh| {
             mesh.triangles.pop();
             mesh

@@ -43,7 +43,7 @@ fn windings() {
 
 #[test]
 fn crowds() {
-    judge(&specimens::crowds());
+    judge(&specimens::crowds(if is_large() { 10 } else { 6 }));
 }
 
 #[test]
@@ -99,11 +99,11 @@ fn near_copies_keep_the_laws() {
     }
 }
 
-/// Ninety cubes (thirty in a debug build) with a common centre, or a common corner: stars, so one piece without
+/// Ninety cubes (twenty in a debug build) with a common centre, or a common corner: stars, so one piece without
 /// handles, whatever the order.
 #[test]
 fn cubes_through_a_point() {
-    let count = if is_large() { 90 } else { 30 };
+    let count = if is_large() { 90 } else { 20 };
     for corner in [-0.5, 0.0] {
         let mut operands = specimens::turned_cubes(corner, count);
         let one = sound("turned cubes", &solids::union(count), &operands);
@@ -111,7 +111,8 @@ fn cubes_through_a_point() {
         let other = sound("turned cubes", &solids::union(count), &operands);
         assert_eq!((one.components.len(), one.genus()), (1, 0), "{corner}");
         assert!((one.volume_f64() - other.volume_f64()).abs() <= 1e-14 * one.volume_f64(), "{corner}");
-        assert!((1.0..8.0).contains(&one.volume_f64()));
+        // Within the ball that every cube is in.
+        assert!((1.0..21.8).contains(&one.volume_f64()));
     }
 }
 
@@ -203,7 +204,7 @@ fn crossing_fault(mesh: &Mesh) -> Option<String> {
 /// The checker counts what was planted.
 #[test]
 fn planted_crossings_are_counted() {
-    let (a, b) = (solids::cube(0.0, 0.0, 0.0, 2.0), solids::cube(1.0, 1.0, 1.0, 2.0));
+    let (a, b) = (solids::cube(0.0, 0.0, 0.0, 2.0), solids::cube(1.0, 1.25, 1.5, 2.0));
     assert_eq!(crossings(&a), Crossings::default());
     assert!(crossings(&solids::together([&a, &b])).crossing >= 6);
     assert_eq!(crossings(&solids::together([&a, &a])).crossing, 12);

@@ -18,7 +18,7 @@ def read_meshes(path):
         meshes = []
         for _ in range(count):
             vertices, triangles = struct.unpack("<QQ", file.read(16))
-            points = np.frombuffer(file.read(24 * vertices), "<f8").reshape(-1, 3)
+            points = np.frombuffer(file.read(24 * vertices), "<f8").reshape(-1, 3).copy()
             corners = np.frombuffer(file.read(12 * triangles), "<u4").reshape(-1, 3)
             meshes.append((points, corners.astype(np.uint64)))
         return meshes

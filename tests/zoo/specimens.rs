@@ -224,11 +224,11 @@ pub(crate) fn windings() -> Vec<Specimen> {
     ]
 }
 
-/// Many operands.
-pub(crate) fn crowds() -> Vec<Specimen> {
+/// Many operands; the grid of cubes has so many on each axis, and there are five times as many rods each way.
+pub(crate) fn crowds(side: u32) -> Vec<Specimen> {
     let mut all = vec![sponge(1, 5), sponge(2, 81), sponge(3, 1409)];
-    all.extend(grids());
-    all.extend([flush_cuts(), rods(0.0), rods(0.25)]);
+    all.extend(grids(side));
+    all.extend([flush_cuts(), rods(5 * side, 0.0), rods(5 * side, 0.25)]);
     all
 }
 
@@ -245,26 +245,21 @@ pub(crate) fn sponge(depth: u32, genus: i64) -> Specimen {
     )
 }
 
-/// A thousand cubes added one by one, then taken away again: themselves, or a smaller one out of each.
-pub(crate) fn grids() -> Vec<Specimen> {
-    let cells = || (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(f64::from));
+/// A grid of cubes added one by one, then taken away again: themselves, or a smaller one out of each.
+pub(crate) fn grids(side: u32) -> Vec<Specimen> {
+    let count = side.pow(3);
+    let cells = || (0..count).map(move |i| [i % side, i / side % side, i / side / side].map(f64::from));
     let added = || cells().map(|[x, y, z]| cube(x, y, z, 1.0));
     let smaller = cells().map(|[x, y, z]| cube(x + 0.25, y + 0.25, z + 0.25, 0.5));
-    let tree = (1..2000).fold(Tree::Leaf(0), |sum, next| {
-        let op = if next < 1000 { Op::Union } else { Op::Difference };
+    let tree = (1..2 * count as usize).fold(Tree::Leaf(0), |sum, next| {
+        let op = if next < count as usize { Op::Union } else { Op::Difference };
         Tree::Node(op, vec![sum, Tree::Leaf(next)])
     });
-    let hollow = added().chain(smaller).collect();
+    let (twice, hollow) = (added().chain(added()).collect(), added().chain(smaller).collect());
+    let (volume, components) = (0.875 * f64::from(count), 1 + count as usize);
     vec![
-        Specimen::known(
-            "a grid of cubes added and removed",
-            tree.clone(),
-            added().chain(added()).collect(),
-            0.0,
-            0,
-            0,
-        ),
-        Specimen::known("a grid of cubes added and hollowed", tree, hollow, 875.0, 1001, 0),
+        Specimen::known("a grid of cubes added and removed", tree.clone(), twice, 0.0, 0, 0),
+        Specimen::known("a grid of cubes added and hollowed", tree, hollow, volume, components, 0),
     ]
 }
 
@@ -278,17 +273,16 @@ fn flush_cuts() -> Specimen {
     Specimen::known("a bar cut flush again and again", tree, operands, end(90) * 0.3 * 0.7, 1, 0)
 }
 
-/// Fifty rods across fifty rods, in one layer or one a little higher: between them are 49 x 49 holes.
-fn rods(rise: f64) -> Specimen {
-    let along_x = (0..50)
-        .map(|i| f64::from(2 * i))
-        .map(|y| cuboid(Vec3::new(-1.0, y, 0.0), Vec3::new(100.0, y + 1.0, 1.0)));
-    let along_y = (0..50)
-        .map(|i| f64::from(2 * i))
-        .map(|x| cuboid(Vec3::new(x, -1.0, rise), Vec3::new(x + 1.0, 100.0, 1.0 + rise)));
-    let operands = along_x.chain(along_y).collect();
-    let volume = 100.0 * 101.0 - 2500.0 * (1.0 - rise);
-    Specimen::known(&format!("rods 50 x 50, {rise} apart"), union(100), operands, volume, 1, 2401)
+/// Rods across as many rods, in one layer or one a little higher: between them are holes.
+fn rods(count: u32, rise: f64) -> Specimen {
+    let end = f64::from(2 * count);
+    let places = || (0..count).map(|i| f64::from(2 * i));
+    let along_x = places().map(|y| cuboid(Vec3::new(-1.0, y, 0.0), Vec3::new(end, y + 1.0, 1.0)));
+    let along_y = places().map(|x| cuboid(Vec3::new(x, -1.0, rise), Vec3::new(x + 1.0, end, 1.0 + rise)));
+    let operands: Vec<Mesh> = along_x.chain(along_y).collect();
+    let volume = end * (end + 1.0) - f64::from(count * count) * (1.0 - rise);
+    let name = format!("rods {count} x {count}, {rise} apart");
+    Specimen::known(&name, union(operands.len()), operands, volume, 1, i64::from(count - 1).pow(2))
 }
 
 /// Pairs for which only the laws are known: volumes must add up, and every result must be sound.

@@ -60,8 +60,8 @@ pub(crate) fn all() -> Vec<Case> {
     }));
     cases.push(Case::new("Menger 3", || of(specimens::sponge(3, 1409))));
     cases.push(Case::new("Menger 4", || of(specimens::sponge(4, 26433))));
-    cases.push(Case::new("grid of cubes added and removed", || of(specimens::grids().swap_remove(0))));
-    cases.push(Case::new("grid of cubes added and hollowed", || of(specimens::grids().swap_remove(1))));
+    cases.push(Case::new("grid of cubes added and removed", || of(specimens::grids(10).swap_remove(0))));
+    cases.push(Case::new("grid of cubes added and hollowed", || of(specimens::grids(10).swap_remove(1))));
     cases.push(Case::new("plate minus 529 cylinders flush", || plate(true, false)));
     cases.push(Case::new("plate minus 529 cylinders through", || plate(false, false)));
     cases.push(Case::new("plate minus 529 cylinders rotated", || plate(false, true)));
