@@ -67,13 +67,6 @@ fn ball(n: u32) -> Mesh {
     Mesh::new(positions, triangles)
 }
 
-/// A colour of its own for each triangle.
-fn numbered(count: usize) -> Vec<Option<[f32; 4]>> {
-    (0..count)
-        .map(|i| Some([0, 8, 16].map(|k| ((i + 1) >> k & 255) as f32)).map(|[r, g, b]| [r, g, b, 1.0]))
-        .collect()
-}
-
 /// The ray through the point (x, y) of the picture, in model coordinates.
 fn ray(camera: &Camera, width: u32, height: u32, x: f64, y: f64) -> (Vec3, Vec3) {
     let forward = (camera.target - camera.eye).normalize();
