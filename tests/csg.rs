@@ -6,7 +6,7 @@ use ogee::csg::{
     build_with_progress, print,
 };
 use ogee::math::{Affine3, Vec2, Vec3};
-use ogee::mesh::{Defects, Mesh, Solid};
+use ogee::mesh::{Defects, Measures, Mesh, Solid};
 use ogee::tessellate::SweepError;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -360,7 +360,9 @@ fn meshes_that_overlap_themselves_are_cleaned() {
         slices: 5,
         scale: Vec2::new(0.0, 1.0),
     };
-    let (solid_, _) = solid(&Csg::LinearExtrude { sweep: ridge, child: Arc::new(square(-1.0, 1.0)) });
+    let ridge = Csg::LinearExtrude { sweep: ridge, child: Arc::new(square(-1.0, 1.0)) };
+    let exact = BuildOptions { resolution: 0.0, ..BuildOptions::default() };
+    let Shape::Solid(solid_) = build(&ridge, &exact).unwrap().shape else { panic!("a solid") };
     assert!(solid_.is_embedded() && volume(solid_.mesh()) > 0.0);
 }
 
@@ -465,4 +467,20 @@ proptest! {
         }
         prop_assert_eq!(solid(&recipe).0, lazy);
     }
+}
+
+#[test]
+fn parts_that_miss_each_other_by_rounding_errors_are_joined() {
+    // Ten bricks at multiples of 0.1: 3 * 0.1 is not 0.2 + 0.1.
+    let brick = |i: i32| at(f64::from(i) * 0.1, 0.0, 0.0, cube(Vec3::ZERO, Vec3::splat(0.1)));
+    let wall = union([0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(brick));
+    let components = |options: &BuildOptions| match build(&wall, options).unwrap().shape {
+        Shape::Solid(solid) => (Measures::of(solid.mesh()).components, solid.triangles().len()),
+        Shape::Region(_) => panic!("a solid"),
+    };
+    assert_eq!(components(&BuildOptions::default()), (1, 12));
+    assert!(
+        components(&BuildOptions { resolution: 0.0, ..BuildOptions::default() }).0 > 1,
+        "every bit counts"
+    );
 }

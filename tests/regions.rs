@@ -82,8 +82,8 @@ proptest! {
 
     #[test]
     fn areas_add_up(a in contours(4), b in contours(4)) {
-        let both = combine(&[&a, &b], |w| w.len() == 2);
-        let either = combine(&[&a, &b], |w| !w.is_empty());
+        let both = combine(&[&a, &b], 0.0, |w| w.len() == 2);
+        let either = combine(&[&a, &b], 0.0, |w| !w.is_empty());
         let area = |c: &[Contour]| Region::new(c, FillRule::NonZero).expect("finite").area();
         prop_assert!((area(&a) + area(&b) - both.area() - either.area()).abs() < 1e-12);
     }

@@ -131,7 +131,7 @@ impl Contacts {
                     continue;
                 }
                 let opposite = scene.triangles[twin as usize / 3].corners[(twin as usize + 2) % 3];
-                if plane.side(&scene.points, opposite) == 0 {
+                if plane.side(scene.points(), opposite) == 0 {
                     self.touched[twin as usize / 3] = true;
                     stack.push(twin / 3);
                 }
@@ -143,7 +143,7 @@ impl Contacts {
 /// On which sides of the plane of one triangle the corners of another lie.
 fn sides(scene: &Scene, plane: &Plane, of: u32, triangle: u32) -> [i32; 3] {
     let own = scene.triangles[of as usize].corners;
-    let side = |p: PointId| if own.contains(&p) { 0 } else { plane.side(&scene.points, p) };
+    let side = |p: PointId| if own.contains(&p) { 0 } else { plane.side(scene.points(), p) };
     scene.triangles[triangle as usize].corners.map(side)
 }
 
@@ -160,7 +160,7 @@ fn are_unfolded_neighbours(scene: &Scene, t: u32, s: u32) -> bool {
                 |h: u32, ahead: u32| scene.triangles[h as usize / 3].corners[((h % 3 + ahead) % 3) as usize];
             let (a, b) = (corner(half_edge, 0), corner(half_edge, 1));
             (0..3).any(|axis| {
-                let side = |c: PointId| scene.points.orientation(a, b, c, axis);
+                let side = |c: PointId| scene.points().orientation(a, b, c, axis);
                 side(corner(half_edge, 2)) * side(corner(twin, 2)) < 0
             })
         }
@@ -211,7 +211,7 @@ fn section(scene: &mut Scene, triangle: u32, sides: [i32; 3], plane: &Plane) -> 
             add(corners[i]);
         }
         if sides[i] * sides[j] < 0 {
-            add(scene.points.crossing(corners[i], corners[j], plane));
+            add(scene.places.points.crossing(corners[i], corners[j], plane));
         }
     }
     let first = ends[0].expect("the triangle meets the plane");
@@ -221,6 +221,6 @@ fn section(scene: &mut Scene, triangle: u32, sides: [i32; 3], plane: &Plane) -> 
 
 /// Orders points of one line along it.
 fn along(scene: &Scene, a: PointId, b: PointId) -> Ordering {
-    let by = |axis: usize| scene.points.compare(a, b, axis);
+    let by = |axis: usize| scene.points().compare(a, b, axis);
     by(0).then_with(|| by(1)).then_with(|| by(2))
 }

@@ -64,8 +64,16 @@ pub(super) struct ScriptArgs {
     /// those in OPENSCADPATH
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     allow: Vec<PathBuf>,
+    /// Take coordinates for equal that differ by less than this part of the model's size; 0 keeps all bits
+    #[arg(long, value_name = "R", default_value = "1e-12", value_parser = resolution)]
+    resolution: f64,
     #[command(flatten, next_help_heading = "Limits")]
     limits: Limits,
+}
+
+fn resolution(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=0.001).contains(&value) { Ok(value) } else { Err("it must be from 0 to 0.001".to_owned()) }
 }
 
 #[derive(Args)]
@@ -101,7 +109,7 @@ impl ScriptArgs {
 
     /// The builder's options.
     pub(super) fn build_options(&self) -> csg::BuildOptions {
-        csg::BuildOptions { max_triangles: self.limits.limit_triangles }
+        csg::BuildOptions { max_triangles: self.limits.limit_triangles, resolution: self.resolution }
     }
 
     /// The files that the script `main` may read.

@@ -26,7 +26,7 @@ impl Solver<'_, '_> {
                 let operands: Vec<&[Vec<Vec2>]> = operands.iter().map(Vec::as_slice).collect();
                 self.report.booleans += 1;
                 self.step();
-                Ok(polygon::combine(&operands, |winding| tree.holds(winding)))
+                Ok(polygon::combine(&operands, self.resolution, |winding| tree.holds(winding)))
             }
         }
     }

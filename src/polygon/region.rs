@@ -63,7 +63,7 @@ impl Region {
                 return Err(RegionError::NotFinite { contour, vertex });
             }
         }
-        Ok(combine(&[contours], |winding| rule.holds(winding.first().map_or(0, |&(_, times)| times))))
+        Ok(combine(&[contours], 0.0, |winding| rule.holds(winding.first().map_or(0, |&(_, times)| times))))
     }
 
     /// A region made by an algorithm that keeps the promises by construction.
