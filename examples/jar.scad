@@ -35,7 +35,7 @@ module thread(r, out) {
   ];
   e = 4 * n;
   ends = [[2, 1, 0], [3, 2, 0], [e, e + 1, e + 2], [e, e + 2, e + 3]];
-  faces = [for (f = concat(sides, ends)) out > 0 ? [f[2], f[1], f[0]] : f];
+  faces = [for (f = concat(sides, ends)) out > 0 ? f : [f[2], f[1], f[0]]];
   polyhedron(points, faces, convexity = 8);
 }
 

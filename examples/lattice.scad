@@ -1,8 +1,8 @@
 // A lattice of struts through the cells of a cube, with balls at the joints.
-cells = 3;
-cell = 14;
-strut = 2.4;
-joint = 4.4;
+cells = 2;
+cell = 20;
+strut = 3;
+joint = 5.6;
 
 $fn = 12;
 

@@ -18,7 +18,7 @@ difference() {
     translate([0, 0, -1]) slab([size[0] - 2 * frame, size[1] - 2 * frame], radius - 3, thickness + 2);
     holes();
   }
-  for (x = [-1, 1], y = [-1, 1]) translate([x * (size[0] - frame) / 2, y * (size[1] - frame) / 2, -1])
+  for (x = [-1, 1], y = [-1, 1]) translate([x * (size[0] / 2 - frame), y * (size[1] / 2 - frame), -1])
     cylinder(h = thickness + 2, d = screw);
 }
 

@@ -90,7 +90,7 @@ impl Contacts {
     /// Records what triangles `t` and `s` have in common.
     fn examine(&mut self, scene: &mut Scene, t: u32, s: u32) {
         let plane_t = *scene.own_plane(t);
-        let sides_s = sides(scene, &plane_t, s);
+        let sides_s = sides(scene, &plane_t, t, s);
         if all_on_one_side(sides_s) {
             return;
         }
@@ -102,7 +102,7 @@ impl Contacts {
             return;
         }
         let plane_s = *scene.own_plane(s);
-        let sides_t = sides(scene, &plane_s, t);
+        let sides_t = sides(scene, &plane_s, s, t);
         if all_on_one_side(sides_t) || meet_only_at_shared_corners(scene, [t, s], [sides_t, sides_s]) {
             return;
         }
@@ -140,8 +140,11 @@ impl Contacts {
     }
 }
 
-fn sides(scene: &Scene, plane: &Plane, triangle: u32) -> [i32; 3] {
-    scene.triangles[triangle as usize].corners.map(|p| plane.side(&scene.points, p))
+/// On which sides of the plane of one triangle the corners of another lie.
+fn sides(scene: &Scene, plane: &Plane, of: u32, triangle: u32) -> [i32; 3] {
+    let own = scene.triangles[of as usize].corners;
+    let side = |p: PointId| if own.contains(&p) { 0 } else { plane.side(&scene.points, p) };
+    scene.triangles[triangle as usize].corners.map(side)
 }
 
 fn all_on_one_side(sides: [i32; 3]) -> bool {

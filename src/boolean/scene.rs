@@ -76,13 +76,13 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    /// Snaps all operands to the finest lattice for them. Triangles without area on the lattice are dropped.
-    pub(super) fn new(operands: &[Operand<'_>]) -> Scene {
+    /// Snaps all operands to the finest lattice for them, or to one as coarse as `resolution` allows. Triangles without area on the lattice are dropped.
+    pub(super) fn new(operands: &[Operand<'_>], resolution: f64) -> Scene {
         let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
         let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
         let mut scene = Scene {
             points: Points::default(),
-            lattice: Lattice::fitting(largest),
+            lattice: Lattice::fitting(largest).as_coarse_as(resolution),
             given: Vec::new(),
             exact: true,
             triangles: Vec::new(),

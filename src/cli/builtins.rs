@@ -24,10 +24,10 @@ pub(super) fn run(args: &Args) -> Result<(), Stop> {
     let asked =
         |builtin: &&Builtin| args.names.is_empty() || args.names.iter().any(|name| name == builtin.name);
     let mut rows: Vec<&Builtin> = builtins().filter(asked).collect();
-    rows.sort_by_key(|builtin| (builtin.kind, builtin.name));
+    rows.sort_by_key(|builtin| (builtin.is_missing(), builtin.kind, builtin.name));
     let mut text = String::new();
-    for group in rows.chunk_by(|a, b| a.kind == b.kind) {
-        text += title(group[0].kind);
+    for group in rows.chunk_by(|a, b| (a.is_missing(), a.kind) == (b.is_missing(), b.kind)) {
+        text += title(group[0]);
         for builtin in group {
             text += &format!("  {}\n      {}\n", usage(builtin), builtin.help);
         }
@@ -35,20 +35,19 @@ pub(super) fn run(args: &Args) -> Result<(), Stop> {
     print(&text)
 }
 
-fn title(kind: BuiltinKind) -> &'static str {
-    match kind {
+fn title(builtin: &Builtin) -> &'static str {
+    match builtin.kind {
+        _ if builtin.is_missing() => "Not there yet\n",
         BuiltinKind::Module => "Modules\n",
         BuiltinKind::Function => "Functions\n",
         BuiltinKind::Variable => "Variables\n",
-        BuiltinKind::Missing => "Not there yet\n",
     }
 }
 
 fn usage(builtin: &Builtin) -> String {
-    match builtin.kind {
-        BuiltinKind::Variable | BuiltinKind::Missing => builtin.name.to_owned(),
-        BuiltinKind::Module | BuiltinKind::Function => {
-            format!("{}({})", builtin.name, builtin.parameters.join(", "))
-        }
+    if builtin.is_missing() || builtin.kind == BuiltinKind::Variable {
+        builtin.name.to_owned()
+    } else {
+        format!("{}({})", builtin.name, builtin.parameters.join(", "))
     }
 }

@@ -1,10 +1,10 @@
 use super::input::{Kind, Source};
-use super::model::Shape;
 use super::model::{self, Times};
 use super::output::Place;
 use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
 use super::terminal::Terminal;
+use crate::csg::{Color, Shape};
 use crate::io::{Format, png};
 use crate::math::Vec3;
 use crate::mesh::Mesh;
@@ -76,9 +76,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let place = Place::typed(&args.output)?;
     let source = Source::typed(&args.input);
     let mut times = Times::default();
-    let mesh = load(args, &source, &mut times, terminal)?;
-    let style = args.style();
+    let (mesh, colors) = load(args, &source, &mut times, terminal)?;
     let camera = args.camera(&mesh);
+    let style = args.style(colors);
     let image = times.stage(terminal, "render", "drawing", || render::draw(&mesh, &camera, &style));
     let image = image.map_err(|error| Stop::about(&source, error))?;
     place.write(|out| Ok(png::write(image.width, &image.pixels, out)?))?;
@@ -89,23 +89,30 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     Ok(())
 }
 
-/// What is to be drawn.
-fn load(args: &Args, source: &Source, times: &mut Times, terminal: &Terminal) -> Result<Mesh, Stop> {
+/// What is to be drawn, and the colours of its triangles where it has any.
+fn load(
+    args: &Args,
+    source: &Source,
+    times: &mut Times,
+    terminal: &Terminal,
+) -> Result<(Mesh, Vec<Option<Color>>), Stop> {
     match args.format.map_or_else(|| source.kind(), |format| Ok(Kind::Mesh(format)))? {
-        Kind::Mesh(format) => source.mesh(format),
-        Kind::Script => match model::build(source, &args.script, times, terminal)? {
-            Shape::Solid(solid) => Ok(solid.into_mesh()),
-            Shape::Region(_) => {
-                let reason =
-                    "the script makes a plane region, which cannot be drawn; linear_extrude makes it a solid";
-                Err(Stop::about(source, reason))
+        Kind::Mesh(format) => Ok((source.mesh(format)?, Vec::new())),
+        Kind::Script => {
+            let built = model::build(source, &args.script, false, times, terminal)?;
+            match built.shape {
+                Shape::Solid(solid) => Ok((solid.into_mesh(), built.colors)),
+                Shape::Region(_) => {
+                    let reason = "the script makes a plane region, which cannot be drawn; linear_extrude makes it a solid";
+                    Err(Stop::about(source, reason))
+                }
             }
-        },
+        }
     }
 }
 
 impl Args {
-    fn style(&self) -> Style {
+    fn style(&self, colors: Vec<Option<Color>>) -> Style {
         let plain = Style::default();
         let [r, g, b] = self.material.unwrap_or([plain.material[0], plain.material[1], plain.material[2]]);
         Style {
@@ -119,6 +126,7 @@ impl Args {
             }),
             background: self.background.map_or(plain.background, |Background(color)| color),
             material: [r, g, b, 1.0],
+            colors,
             shadow: !self.no_shadow,
             ..plain
         }

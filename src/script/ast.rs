@@ -132,6 +132,13 @@ pub(super) enum Expr {
     },
 }
 
+impl Expr {
+    /// Whether it ends with an expression that takes in all that follows.
+    pub(super) fn is_open(&self) -> bool {
+        matches!(self, Expr::Let(_) | Expr::Assert { .. } | Expr::Echo { .. } | Expr::Function(_))
+    }
+}
+
 /// Operators before their operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum UnaryOp {

@@ -8,6 +8,12 @@ use super::value::Value;
 /// Levels of expression a level of calls may take, on average.
 const LEVELS_A_CALL: u32 = 64;
 
+/// Bytes of stack a level of calls takes, roughly.
+const STACK_A_CALL: usize = 4096;
+
+/// Steps between two looks at memory.
+const STEPS_A_LOOK: u64 = 256;
+
 /// Why an operation has no value.
 #[derive(Debug, PartialEq)]
 pub(super) enum Fault {
@@ -51,7 +57,7 @@ impl Budget {
         }
     }
 
-    /// Takes `steps` of those allowed, and looks at memory as well.
+    /// Takes `steps` of those allowed, and looks at memory every now and then.
     #[inline]
     pub(super) fn spend(&mut self, steps: u64) -> Result<(), Fault> {
         if self.steps_left < steps {
@@ -59,7 +65,7 @@ impl Budget {
             return Err(Fault::Limit(format!("the script takes more than {} steps", self.most_steps)));
         }
         self.steps_left -= steps;
-        self.reserve(0)
+        if self.steps_left % STEPS_A_LOOK < steps { self.reserve(0) } else { Ok(()) }
     }
 
     /// Whether `bytes` more may be taken.
@@ -80,6 +86,7 @@ impl Budget {
         if self.calls == self.most_calls {
             return Err(Fault::Limit(format!("calls are nested more than {} deep", self.most_calls)));
         }
+        self.reserve(STACK_A_CALL * self.calls as usize)?;
         self.calls += 1;
         Ok(())
     }

@@ -6,10 +6,10 @@ use std::f64::consts::PI;
 
 /// Below this radius a circle is a triangle: 2^-20, the grid OpenSCAD rounds to.
 const TINY: f64 = 1.0 / 1_048_576.0;
-/// Smallest values of `$fa` and `$fs`, as in OpenSCAD.
-const FINEST: f64 = 0.01;
-
 impl Fragmentation {
+    /// Smallest value of `$fa` and `$fs`, as in OpenSCAD.
+    pub(super) const FINEST: f64 = 0.01;
+
     /// Number of fragments of a full circle: `$fn` where it is positive, else from the chord error `$fe` where that
     /// is positive, else the smaller of what `$fa` and `$fs` ask for, at least 5. It may be too large for anything.
     pub(super) fn of_circle(&self, radius: f64) -> f64 {
@@ -25,8 +25,8 @@ impl Fragmentation {
             let cosine = (1.0 - self.error / radius).max(-1.0);
             return (PI / math::acos(cosine)).ceil().max(3.0);
         }
-        let by_angle = 360.0 / self.angle.max(FINEST);
-        let by_size = 2.0 * PI * radius / self.size.max(FINEST);
+        let by_angle = 360.0 / self.angle.max(Self::FINEST);
+        let by_size = 2.0 * PI * radius / self.size.max(Self::FINEST);
         by_angle.min(by_size).max(5.0).ceil()
     }
 
@@ -42,8 +42,8 @@ impl Fragmentation {
             return (degrees / 360.0 * self.of_circle(radius)).ceil().max(least);
         }
         let length = math::hypot(degrees / 360.0 * 2.0 * PI * radius, height);
-        let by_angle = (degrees / self.angle.max(FINEST)).ceil();
-        let by_size = (length / self.size.max(FINEST)).ceil();
+        let by_angle = (degrees / self.angle.max(Self::FINEST)).ceil();
+        let by_size = (length / self.size.max(Self::FINEST)).ceil();
         by_angle.min(by_size).max(least)
     }
 }

@@ -1,6 +1,6 @@
 //! Values and functions as text, as `echo` and `str` show them.
 
-use super::ast::{Argument, Binding, Callee, Expr, ExprId, FunctionId, Parameter, Program};
+use super::ast::{Argument, BinaryOp, Binding, Callee, Expr, ExprId, FunctionId, Parameter, Program};
 use super::budget::{Budget, Fault};
 use super::names::Symbol;
 use super::value::Value;
@@ -171,6 +171,12 @@ impl Printer<'_> {
             match part {
                 Part::Text(text) => self.push(text),
                 Part::Expr(id) => self.expr(*id)?,
+                Part::Operand(id) => self.wrapped(*id, self.program[*id].is_open())?,
+                Part::Base(id) => {
+                    let expr = &self.program[*id];
+                    let loose = matches!(expr, Expr::Unary { .. } | Expr::Number(_));
+                    self.wrapped(*id, loose || expr.is_open())?;
+                }
                 Part::Arguments(arguments) => self.joined(arguments, Printer::argument)?,
                 Part::Bindings(bindings) => self.joined(bindings, Printer::binding)?,
             }
@@ -178,14 +184,21 @@ impl Printer<'_> {
         Ok(())
     }
 
+    /// An expression, in parentheses where it would take in what follows.
+    fn wrapped(&mut self, id: ExprId, wrap: bool) -> Printed {
+        if wrap { self.parts(&[Part::Text("("), Part::Expr(id), Part::Text(")")]) } else { self.expr(id) }
+    }
+
     fn expr_kind(&mut self, id: ExprId) -> Printed {
-        use Part::{Arguments, Bindings, Expr as E, Text as T};
+        use Part::{Arguments, Base, Bindings, Expr as E, Operand, Text as T};
         let program = self.program;
         match &program[id] {
             Expr::Undef => self.push("undef"),
             Expr::Bool(value) => self.push(if *value { "true" } else { "false" }),
             Expr::Number(value) => self.push(&number(*value)),
-            Expr::Text(text) => self.parts(&[T("\""), T(text.as_str()), T("\"")])?,
+            Expr::Text(text) => {
+                self.parts(&[T("\""), T(text.as_str()), T("\"")])?;
+            }
             Expr::Variable { name, .. } => self.name(*name),
             Expr::List(elements) => {
                 self.push("[");
@@ -193,31 +206,46 @@ impl Printer<'_> {
                 self.push("]");
             }
             Expr::Range { begin, step: None, end } => {
-                self.parts(&[T("["), E(*begin), T(" : "), E(*end), T("]")])?
+                self.parts(&[T("["), E(*begin), T(" : "), E(*end), T("]")])?;
             }
             Expr::Range { begin, step: Some(step), end } => {
                 self.parts(&[T("["), E(*begin), T(" : "), E(*step), T(" : "), E(*end), T("]")])?;
             }
-            Expr::Unary { op, operand } => self.parts(&[T(op.text()), E(*operand)])?,
+            Expr::Unary { op, operand } => {
+                self.parts(&[T(op.text()), Operand(*operand)])?;
+            }
             Expr::Binary { op, left, right } => {
-                self.parts(&[T("("), E(*left), T(" "), T(op.text()), T(" "), E(*right), T(")")])?;
+                let left = if *op == BinaryOp::Power { Base(*left) } else { Operand(*left) };
+                self.parts(&[T("("), left, T(" "), T(op.text()), T(" "), Operand(*right), T(")")])?;
             }
             Expr::Conditional { condition, then, otherwise } => {
-                self.parts(&[T("("), E(*condition), T(" ? "), E(*then), T(" : "), E(*otherwise), T(")")])?;
+                self.parts(&[
+                    T("("),
+                    Operand(*condition),
+                    T(" ? "),
+                    E(*then),
+                    T(" : "),
+                    E(*otherwise),
+                    T(")"),
+                ])?;
             }
-            Expr::Index { list, index } => self.parts(&[E(*list), T("["), E(*index), T("]")])?,
+            Expr::Index { list, index } => {
+                self.parts(&[Base(*list), T("["), E(*index), T("]")])?;
+            }
             Expr::Member { object, name } => {
-                self.parts(&[E(*object), T("."), T(program.names.text(*name))])?
+                self.parts(&[Base(*object), T("."), T(program.names.text(*name))])?;
             }
             Expr::Call(call) => {
                 match &call.callee {
                     Callee::Name { name, .. } => self.name(*name),
-                    Callee::Value(callee) => self.parts(&[T("("), E(*callee), T(")")])?,
+                    Callee::Value(callee) => {
+                        self.parts(&[T("("), E(*callee), T(")")])?;
+                    }
                 }
                 self.parts(&[T("("), Arguments(&call.arguments), T(")")])?;
             }
             Expr::Let(inner) => {
-                self.parts(&[T("let("), Bindings(&inner.bindings), T(") "), E(inner.body)])?
+                self.parts(&[T("let("), Bindings(&inner.bindings), T(") "), E(inner.body)])?;
             }
             Expr::Assert { arguments, body } | Expr::Echo { arguments, body } => {
                 let word = if matches!(program[id], Expr::Assert { .. }) { "assert(" } else { "echo(" };
@@ -227,9 +255,11 @@ impl Printer<'_> {
                 }
             }
             Expr::Function(function) => self.function(*function)?,
-            Expr::Each(list) => self.parts(&[T("each ("), E(*list), T(")")])?,
+            Expr::Each(list) => {
+                self.parts(&[T("each ("), E(*list), T(")")])?;
+            }
             Expr::For(inner) => {
-                self.parts(&[T("for("), Bindings(&inner.bindings), T(") "), E(inner.body)])?
+                self.parts(&[T("for("), Bindings(&inner.bindings), T(") "), E(inner.body)])?;
             }
             Expr::While(inner) => self.parts(&[
                 T("for("),
@@ -257,6 +287,10 @@ impl Printer<'_> {
 enum Part<'a> {
     Text(&'a str),
     Expr(ExprId),
+    /// An expression beside an operator.
+    Operand(ExprId),
+    /// An expression before `[`, `.` or `^`, which bind tighter than a sign.
+    Base(ExprId),
     Arguments(&'a [Argument]),
     Bindings(&'a [Binding]),
 }

@@ -166,8 +166,11 @@ impl Lexer<'_> {
             self.at += word;
             self.push(TokenKind::Number(value), start);
         } else if number > 0 && number >= word {
-            let value = rest[..number].parse().unwrap_or(f64::NAN);
+            let value: f64 = rest[..number].parse().unwrap_or(f64::NAN);
             self.at += number;
+            if !value.is_finite() {
+                self.complain(start, "this number is too large".to_owned());
+            }
             self.push(TokenKind::Number(value), start);
         } else {
             self.at += word;
@@ -177,10 +180,10 @@ impl Lexer<'_> {
 
     fn word(&mut self, start: usize) {
         let word = &self.text[start..self.at];
-        if word == "include" || word == "use" {
-            if let Some(kind) = self.path(word == "include") {
-                return self.push(kind, start);
-            }
+        if (word == "include" || word == "use")
+            && let Some(kind) = self.path(word == "include")
+        {
+            return self.push(kind, start);
         }
         let kind = match KEYWORDS.iter().find(|(text, _)| *text == word) {
             Some((_, keyword)) => TokenKind::Keyword(*keyword),
@@ -256,7 +259,7 @@ impl Lexer<'_> {
                 value.push(if c == '\0' { ' ' } else { c });
             }
             None => {
-                self.complain(start, format!("this escape needs {digits} hexadecimal digits of a character"))
+                self.complain(start, format!("this escape needs {digits} hexadecimal digits of a character"));
             }
         }
     }

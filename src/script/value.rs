@@ -312,6 +312,7 @@ impl Frame {
         64 + size_of::<Option<Value>>() * slots
     }
 
+    #[inline]
     pub(super) fn get(&self, slot: u32) -> Option<Value> {
         self.slots.borrow()[slot as usize].clone()
     }

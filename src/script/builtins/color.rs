@@ -22,6 +22,8 @@ fn color<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Mad
     let Some(mut color) = parse(&value) else {
         if !value.is_undef() {
             unusable(machine, call, "c", &value, &wanted(&value))?;
+        } else if call.arguments.get("alpha").is_some() {
+            machine.warn(call.span, "alpha needs a colour beside it");
         }
         return machine.joined(children, call.span);
     };

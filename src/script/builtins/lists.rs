@@ -35,6 +35,9 @@ pub(super) const TABLE: &[Builtin] = &[
     function_row("is_list", &["value"], "Whether the value is a list.", |_, a| {
         test(a, |value| matches!(value, Value::List(_)))
     }),
+    function_row("is_object", &["value"], "Whether the value is an object; there are none yet.", |_, a| {
+        test(a, |_| false)
+    }),
     function_row("is_function", &["value"], "Whether the value is a function.", |_, a| {
         test(a, |value| matches!(value, Value::Function(_)))
     }),
@@ -81,7 +84,8 @@ fn lookup(session: &mut Session<'_>, arguments: &[Value]) -> Outcome {
         [key, value, ..] => Some((*key, *value)),
         _ => None,
     });
-    let (mut below, mut above): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
+    let mut below: Option<(f64, f64)> = None;
+    let mut above: Option<(f64, f64)> = None;
     for row in rows {
         if row.0 <= key && below.is_none_or(|below| row.0 > below.0) {
             below = Some(row);

@@ -43,8 +43,6 @@ pub enum BuiltinKind {
     Function,
     /// A variable that has a value from the start.
     Variable,
-    /// A module of OpenSCAD that is not there yet; to call it is an error.
-    Missing,
 }
 
 /// What a builtin does when it is called.
@@ -54,10 +52,19 @@ pub(super) enum Action {
     Module(ModuleAction),
     /// Known to the grammar, or a variable.
     Nothing,
+    /// OpenSCAD has it and we do not: to call it is an error.
+    Missing,
 }
 
 type FunctionAction = fn(&mut Session<'_>, &[Value]) -> Outcome;
 type ModuleAction = for<'m, 'p> fn(&'m mut Machine<'p>, &'m Invocation<'m, 'p>) -> Result<Made, Failure>;
+
+impl Builtin {
+    /// Whether only its name is known: OpenSCAD has it, and calling it here is an error that says so.
+    pub fn is_missing(&self) -> bool {
+        matches!(self.action, Action::Missing)
+    }
+}
 
 /// All builtins: modules, functions, variables, and what is missing.
 pub fn builtins() -> impl Iterator<Item = &'static Builtin> {
@@ -71,8 +78,7 @@ pub(super) fn function(name: &str) -> Option<&'static Builtin> {
 
 /// The builtin module of this name, be it there or missing.
 pub(super) fn module(name: &str) -> Option<&'static Builtin> {
-    let mut modules = builtins().filter(|b| matches!(b.kind, BuiltinKind::Module | BuiltinKind::Missing));
-    modules.find(|builtin| builtin.name == name)
+    builtins().find(|builtin| builtin.kind == BuiltinKind::Module && builtin.name == name)
 }
 
 pub(super) fn functions() -> impl Iterator<Item = &'static str> {
@@ -132,6 +138,7 @@ const fn module_row(
     Builtin { name, kind: BuiltinKind::Module, parameters, help, positional, action: Action::Module(action) }
 }
 
+/// A row for what the grammar or the evaluator knows by itself.
 const fn row(kind: BuiltinKind, name: &'static str, help: &'static str) -> Builtin {
     Builtin { name, kind, parameters: &[], help, positional: 0, action: Action::Nothing }
 }
@@ -140,8 +147,9 @@ const fn variable(name: &'static str, help: &'static str) -> Builtin {
     row(BuiltinKind::Variable, name, help)
 }
 
-const fn missing(name: &'static str, help: &'static str) -> Builtin {
-    row(BuiltinKind::Missing, name, help)
+/// A row for what is not there yet.
+const fn missing(kind: BuiltinKind, name: &'static str, help: &'static str) -> Builtin {
+    Builtin { action: Action::Missing, ..row(kind, name, help) }
 }
 
 const VARIABLES: &[Builtin] = &[
@@ -161,14 +169,21 @@ const VARIABLES: &[Builtin] = &[
 ];
 
 const MISSING: &[Builtin] = &[
-    missing("text", "Letters as a plane shape."),
-    missing("offset", "A plane shape grown or shrunk."),
-    missing("minkowski", "The sum of shapes: one moved along all of another."),
-    missing("projection", "The shadow or a cut of a solid."),
-    missing("resize", "A shape scaled to a size."),
-    missing("surface", "A solid below the heights of a grid or a picture."),
-    missing("roof", "A roof over a plane shape."),
-    missing("fill", "A plane shape without its holes."),
+    missing(BuiltinKind::Module, "text", "Letters as a plane shape."),
+    missing(BuiltinKind::Module, "offset", "A plane shape grown or shrunk."),
+    missing(BuiltinKind::Module, "minkowski", "The sum of shapes: one moved along all of another."),
+    missing(BuiltinKind::Module, "projection", "The shadow or a cut of a solid."),
+    missing(BuiltinKind::Module, "resize", "A shape scaled to a size."),
+    missing(BuiltinKind::Module, "surface", "A solid below the heights of a grid or a picture."),
+    missing(BuiltinKind::Module, "roof", "A roof over a plane shape."),
+    missing(BuiltinKind::Module, "fill", "A plane shape without its holes."),
+    missing(BuiltinKind::Function, "textmetrics", "Extents of a text."),
+    missing(BuiltinKind::Function, "fontmetrics", "Extents of a font."),
+    missing(BuiltinKind::Function, "import", "The data in a file."),
+    missing(BuiltinKind::Function, "dxf_dim", "A dimension of a drawing."),
+    missing(BuiltinKind::Function, "dxf_cross", "Where two lines of a drawing cross."),
+    missing(BuiltinKind::Function, "object", "A value with named members."),
+    missing(BuiltinKind::Function, "has_key", "Whether an object has a member."),
 ];
 
 #[cfg(test)]

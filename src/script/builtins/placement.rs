@@ -119,7 +119,7 @@ fn rotate<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Ma
         }
         _ => None,
     };
-    let Some(matrix) = matrix.filter(|matrix| matrix.is_finite()) else {
+    let Some(matrix) = matrix.filter(Mat3::is_finite) else {
         unusable(machine, call, "a", &angle, "a finite number of degrees, or up to three")?;
         return placed(machine, call, Affine3::IDENTITY);
     };

@@ -5,7 +5,7 @@ use crate::csg::{Body, Csg, Flat};
 use crate::math::{Vec2, Vec3};
 use crate::script::Failure;
 use crate::script::diagnostic::Span;
-use crate::script::eval::{Invocation, Machine, Made};
+use crate::script::eval::{Fragmentation, Invocation, Machine, Made};
 use crate::script::value::{List, Value};
 use std::sync::Arc;
 
@@ -34,25 +34,7 @@ pub(super) const TABLE: &[Builtin] = &[
         "Points joined in order; paths of indices make several contours, holes among them.",
         polygon,
     ),
-    module_row(
-        "import",
-        &[
-            "file",
-            "layer",
-            "convexity",
-            "origin",
-            "scale",
-            "width",
-            "height",
-            "filename",
-            "center",
-            "dpi",
-            "id",
-        ],
-        3,
-        "The solid in a file.",
-        import,
-    ),
+    module_row("import", &["file", "filename", "convexity"], 1, "The solid in a file.", import),
 ];
 
 /// Most facets of one shape.
@@ -217,7 +199,13 @@ pub(super) fn fragments(
     radius: f64,
     facets: impl Fn(f64) -> f64,
 ) -> Result<u32, Failure> {
-    let fragments = machine.fragmentation().of_circle(radius);
+    let fragmentation = machine.fragmentation();
+    for (name, value) in [("$fa", fragmentation.angle), ("$fs", fragmentation.size)] {
+        if value < Fragmentation::FINEST && fragmentation.count <= 0.0 {
+            machine.warn(span, format!("{name} of {value} counts as {}", Fragmentation::FINEST));
+        }
+    }
+    let fragments = fragmentation.of_circle(radius);
     checked(machine, span, fragments, facets(fragments))
 }
 

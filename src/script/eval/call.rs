@@ -309,6 +309,7 @@ impl<'p> Machine<'p> {
                 let spent = self.session.budget.spend(1);
                 spent.and_then(|()| action(&mut self.session, &self.stack[base..]))
             }
+            Action::Missing => return Err(self.missing(span, builtin.name)),
             Action::Module(_) | Action::Nothing => Ok(Value::Undef),
         };
         self.stack.truncate(base);

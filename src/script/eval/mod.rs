@@ -216,6 +216,11 @@ impl<'p> Machine<'p> {
         Failure::Error
     }
 
+    /// Stops the script because it calls what is not there yet.
+    fn missing(&mut self, span: Span, name: &str) -> Failure {
+        self.error(span, format!("ogee does not have {name}() yet"))
+    }
+
     pub(super) fn warn(&mut self, span: Span, text: impl Into<String>) {
         self.say(Complaint::warning(span, text));
     }

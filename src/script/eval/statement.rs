@@ -7,7 +7,7 @@ use crate::script::ast::{
     Binding, Block, Home, ModuleCall, ModuleId, Room, Slot, Statement, StatementId, StatementKind, Target,
     UnitId,
 };
-use crate::script::builtins::{Action, BuiltinKind};
+use crate::script::builtins::Action;
 use crate::script::diagnostic::Span;
 use crate::script::report::Complaint;
 use crate::script::stack::with_room;
@@ -197,9 +197,7 @@ impl<'p> Machine<'p> {
                 self.specials.restore(mark);
                 return Ok(made);
             }
-            _ if builtin.kind == BuiltinKind::Missing => {
-                return Err(self.error(span, format!("ogee does not have {name}() yet")));
-            }
+            (_, Action::Missing) => return Err(self.missing(span, name)),
             _ => {}
         }
         if call.children.statements.is_empty() {
@@ -270,6 +268,12 @@ impl<'p> Machine<'p> {
             }
         }
         let outer = std::mem::replace(&mut self.unit, children.unit);
+        let mark = self.specials.mark();
+        // Where the children were written, $children is the number of those of the module around them.
+        let around = children.context.children.as_ref().map_or(0, |outer| outer.block.statements.len());
+        if let Some(name) = self.specials.known().children {
+            self.specials.set(name, Value::Number(around as f64));
+        }
         let made = self.chosen(children.block, &children.context, |machine, context| {
             let mut all = Made::default();
             for id in chosen {
@@ -279,6 +283,7 @@ impl<'p> Machine<'p> {
             }
             Ok(all)
         })?;
+        self.specials.restore(mark);
         self.unit = outer;
         Ok(made)
     }

@@ -5,6 +5,7 @@ use crate::script::ast::{
 };
 use crate::script::diagnostic::Span;
 use crate::script::lexer::{Keyword, TokenKind};
+use crate::script::names::Symbol;
 use crate::script::report::Complaint;
 use crate::script::value::Text;
 use std::rc::Rc;
@@ -117,7 +118,7 @@ impl Parser<'_> {
             }
             _ => Callee::Value(callee),
         };
-        let has_special = arguments.iter().any(|a| a.name.is_some_and(|name| name.is_special()));
+        let has_special = arguments.iter().any(|a| a.name.is_some_and(Symbol::is_special));
         self.add(Expr::Call(Box::new(Call { callee, arguments, has_special })), start)
     }
 

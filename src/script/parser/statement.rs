@@ -23,12 +23,19 @@ impl Parser<'_> {
         self.checked(block)
     }
 
-    /// Statements up to and with the closing brace.
+    /// Statements in braces, with a scope of their own.
     fn braces(&mut self) -> Parse<Block> {
-        let open = self.here();
         let literals = self.literals;
-        self.mark("{")?;
         let mut block = Block::default();
+        self.statements_in_braces(&mut block)?;
+        block.has_literal = self.literals > literals;
+        Ok(self.checked(block))
+    }
+
+    /// Statements up to and with the closing brace, as part of `block`.
+    fn statements_in_braces(&mut self, block: &mut Block) -> Parse<()> {
+        let open = self.here();
+        self.mark("{")?;
         while !self.at_mark("}") {
             if self.gave_up() {
                 return Err(Skip);
@@ -38,11 +45,10 @@ impl Parser<'_> {
                 self.complaints.push(complaint.also(open, "to close this"));
                 return Err(Skip);
             }
-            self.statement_or_skip(&mut block);
+            self.statement_or_skip(block);
         }
         self.bump();
-        block.has_literal = self.literals > literals;
-        Ok(self.checked(block))
+        Ok(())
     }
 
     fn statement_or_skip(&mut self, block: &mut Block) {
@@ -91,6 +97,8 @@ impl Parser<'_> {
                 self.opt_mark(";");
                 Ok(())
             }
+            // Braces that belong to nothing are no scope and no shape: they might as well not be there.
+            TokenKind::Mark("{") => self.nested(|parser| parser.statements_in_braces(block)),
             TokenKind::Keyword(Keyword::Module) => self.module(block),
             TokenKind::Keyword(Keyword::Function) => self.function(block),
             TokenKind::Name(_) if *self.peek_second() == TokenKind::Mark("=") => self.assignment(block),

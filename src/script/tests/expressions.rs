@@ -82,7 +82,7 @@ fn the_same_script_has_the_same_random_numbers() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn six_digits_are_the_nearest(value in proptest::num::f64::NORMAL) {

@@ -14,15 +14,17 @@ const SECOND: (&str, &str) =
 fn variables_are_lexical_and_hoisted() {
     check_echo("echo(x); x = 1; x = 2;", &["2"]);
     check_echo("y = 1; module m() { x = y; y = 2; echo(x, y); } m();", &["1, 2"]);
-    check_echo("x = 1; module m() { echo(x); } { x = 2; m(); echo(x); }", &["1", "2"]);
-    check_echo("x = 1; { x = 2; { x = 3; echo(x); } echo(x); } echo(x);", &["3", "2", "1"]);
+    check_echo("x = 1; module m() { echo(x); } union() { x = 2; m(); echo(x); }", &["1", "2"]);
+    check_echo("x = 1; { x = 2; { x = 3; echo(x); } echo(x); } echo(x);", &["3", "3", "3"]);
+    check_echo("x = 1; union() { x = 2; union() { x = 3; echo(x); } echo(x); } echo(x);", &["3", "2", "1"]);
+    check_echo("{ module m() echo(\"in\"); } m();", &["\"in\""]);
     check_echo("function f(a, b = a) = [a, b]; a = 5; echo(f(1));", &["[1, 5]"]);
     check_echo("module m() { x = 1; module inner() { echo(x); } inner(); } x = 7; m();", &["1"]);
     check_echo("module m(n) { function f(k) = k == 0 ? n : f(k - 1); echo(f(3)); } m(5);", &["5"]);
     check_echo("for (i = [0:1]) { x = i * 2; y = x + 1; echo(x, y); }", &["0, 1", "2, 3"]);
     check_echo("x = 9; for (i = [0:1]) { echo(x); x = i; }", &["0", "1"]);
     check_echo("let (a = 4, b = a) echo(a, b); assign (c = 3) echo(c);", &["4, 4", "3"]);
-    check_echo("x = 5; y = function(a) a + x; { x = 6; echo(y(1)); }", &["6"]);
+    check_echo("x = 5; y = function(a) a + x; union() { x = 6; echo(y(1)); }", &["6"]);
 }
 
 #[test]
@@ -178,4 +180,19 @@ fn several_mistakes_are_told_at_once() {
     let script = "x = ;\nmodule m() { y = 1 +; cube(1); }\ncube(;\nz = 3;\nmodule n() { sphere(1) }\n";
     assert_eq!(host.run(script).map(|_| ()), Err(Failure::Error));
     assert_eq!(host.texts(Severity::Error).len(), 4, "{:#?}", host.messages);
+}
+
+/// Scripts, a line each, with what OpenSCAD 2021.01 was seen to echo for them, indented.
+const OBSERVED: &str = include_str!("scripts.txt");
+
+#[test]
+fn scripts_echo_what_was_seen_in_openscad() {
+    let mut lines = OBSERVED.lines().peekable();
+    while let Some(script) = lines.next() {
+        let mut expected = Vec::new();
+        while let Some(echo) = lines.next_if(|line| line.starts_with('\t')) {
+            expected.push(&echo[1..]);
+        }
+        check_echo(script, &expected);
+    }
 }

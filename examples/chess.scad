@@ -5,8 +5,11 @@ $fn = 72;
 pawn();
 translate([size * 1.5, 0, 0]) rook();
 
-// The foot and shaft, turned from a profile, in units of the size.
-module turned(profile) rotate_extrude() scale(size) polygon(concat([[0, 0]], profile, [[0, profile[len(profile) - 1][1]]]));
+// Turned from the outline on the right of the axis, in units of the size.
+module turned(outline) rotate_extrude() {
+  top = outline[len(outline) - 1][1];
+  polygon(size * concat([[0, 0]], outline, [[0, top]]));
+}
 
 function arc(cx, cy, r, from, to, n = 12) = [
   for (i = [0:n]) let (a = from + (to - from) * i / n) [cx + r * cos(a), cy + r * sin(a)]
