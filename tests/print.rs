@@ -36,7 +36,7 @@ fn shape(recipe: &Csg) -> Shape {
 /// Corners of all triangles or contours, sorted: the shape without the order of its parts.
 fn corners(shape: &Shape) -> Vec<[u64; 3]> {
     let mut corners: Vec<[u64; 3]> = match shape {
-        Shape::Solid(solid) => solid.positions().iter().map(|p| p.to_array()).collect::<Vec<_>>(),
+        Shape::Solid(solid) => solid.positions().iter().map(Vec3::to_array).collect::<Vec<_>>(),
         Shape::Region(region) => {
             region.contours().iter().flatten().map(|p| p.extend(0.0).to_array()).collect()
         }
