@@ -161,7 +161,8 @@ const GUARD: f64 = 32768.0;
 
 /// A camera made ready: model to view to screen.
 ///
-/// View coordinates are right, up and forward from the eye, in units in which the target is 1 to 4 away.
+/// View coordinates are right, up and forward from the eye, in units in which the target is 1 to 4 away. They are
+/// left-handed: cross products of outward facets point inward.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     axes: Mat3,

@@ -117,7 +117,7 @@ impl<'a> Scene<'a> {
         let covered = (opacity.clamp(0.0, 1.0) * 16.0).round() as u32;
         let corners = self.corners(triangle);
         let eye = if self.view.is_perspective() { corners[0] } else { Vec3::Z };
-        let turn = if facet_vector(&corners).dot(eye) > 0.0 { 8 } else { 0 };
+        let turn = if facet_vector(&corners).dot(eye) > 0.0 { 0 } else { 8 };
         (((1_u32 << covered) - 1) as u16).rotate_left(turn)
     }
 
