@@ -5,7 +5,7 @@ use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
 use super::terminal::Terminal;
 use crate::csg::{Color, Shape};
-use crate::io::{self, Format};
+use crate::io::{self as formats, Format};
 use crate::math::Vec3;
 use crate::mesh::Mesh;
 use crate::render::{self, Camera, Edges, Fit, Style};
@@ -81,7 +81,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let style = args.style(colors);
     let image = times.stage(terminal, "render", "drawing", || render::draw(&mesh, &camera, &style));
     let image = image.map_err(|error| Stop::about(&source, error))?;
-    place.write(|out| Ok(io::png::write(image.width, &image.pixels, out)?))?;
+    place.write(|out| Ok(formats::png::write(image.width, &image.pixels, out)?))?;
     if place != Place::Stdout {
         let [width, height] = args.size;
         terminal.note(format_args!("{place}: {width} x {height} pixels, {:.2} s", times.total()));

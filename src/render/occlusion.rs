@@ -82,16 +82,15 @@ fn surface(film: &Film, view: &View, x: i64, y: i64) -> Option<(Vec3, Vec3)> {
 /// The mean over a block of pixels of the same surface.
 fn average(film: &Film, raw: &[Vec<f32>], radius: f64, x: usize, y: usize) -> f32 {
     let Some(here) = film.at(x as i64, y as i64).filter(|pixel| pixel.depth.is_finite()) else { return 1.0 };
-    let (mut sum, mut count) = (0.0, 0.0);
-    let block =
-        |middle: usize, end: usize| (middle + 1).saturating_sub(BLOCK / 2)..(middle + 1 + BLOCK / 2).min(end);
+    let block = |k: usize, end: usize| (k + 1).saturating_sub(BLOCK / 2)..(k + 1 + BLOCK / 2).min(end);
     let columns = block(x, film.width);
-    for (v, row) in raw.iter().enumerate().take(block(y, film.height).end).skip(block(y, film.height).start) {
-        for (u, &openness) in row.iter().enumerate().take(columns.end).skip(columns.start) {
-            let other = &film.pixels[v * film.width + u];
+    let (mut sum, mut count) = (0.0, 0.0);
+    for row in block(y, film.height) {
+        let pixels = &film.pixels[row * film.width..][columns.clone()];
+        for (other, light) in pixels.iter().zip(&raw[row][columns.clone()]) {
             let facing: f32 = (0..3).map(|i| here.normal[i] * other.normal[i]).sum();
             if f64::from((other.depth - here.depth).abs()) < 0.25 * radius && facing > 0.8 {
-                sum += openness;
+                sum += light;
                 count += 1.0;
             }
         }
