@@ -99,6 +99,9 @@ fn write_solid(
     if job.strict && !measures.closed {
         return Err(Stop::NotClosed(format!("{}: the result is not closed", job.source)));
     }
+    if solid.is_empty() {
+        terminal.warn(format!("{}: the result is empty", job.source));
+    }
     times.stage(terminal, "write", "writing", || output::write(&job.outputs, solid.mesh()))?;
     for name in job.outputs.iter().filter_map(Output::name) {
         terminal.note(format_args!("{name}: {}", in_short(&measures, times)));
@@ -110,7 +113,8 @@ fn write_solid(
 fn in_short(measures: &Measures, times: &Times) -> String {
     let Measures { triangles, components, .. } = measures;
     let closed = if measures.closed { "closed" } else { "NOT closed" };
-    format!("{triangles} triangles, {components} components, {closed}, {:.2} s", times.total())
+    let plural = if *components == 1 { "" } else { "s" };
+    format!("{triangles} triangles, {components} component{plural}, {closed}, {:.2} s", times.total())
 }
 
 /// Prints a result to standard output.

@@ -124,9 +124,9 @@ impl Default for Options {
         Options {
             define: Vec::new(),
             time: 0.0,
-            max_steps: 1_000_000_000,
+            max_steps: 200_000_000,
             max_depth: 20_000,
-            max_bytes: 4 << 30,
+            max_bytes: 2 << 30,
         }
     }
 }
