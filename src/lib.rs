@@ -68,3 +68,8 @@ pub mod script;
 // shell
 #[cfg(feature = "cli")]
 pub mod cli;
+
+/// The code in README.md, compiled and run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

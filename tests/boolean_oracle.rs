@@ -3,6 +3,8 @@
 //! `OGEE_ORACLE_COUNT` cases, from `OGEE_ORACLE_SEED` on; case `n` is the same in every run. A case that fails is
 //! shrunk and printed as the Rust that makes it.
 
+#![allow(clippy::print_stdout, reason = "tests say how much they did")]
+
 #[allow(dead_code, reason = "each test program uses its part")]
 mod check;
 #[allow(dead_code, reason = "each test program uses its part")]
@@ -75,15 +77,17 @@ fn a_right_kernel_passes() {
         let allowed = |line: &String| line.contains("nothing meets") || line.contains("not exactly");
         let found: Vec<String> = found.into_iter().filter(|line| !allowed(line)).collect();
         assert_eq!(found, Vec::<String>::new(), "seed {seed}: {case:?}");
-        let crossings = check::crossings(&oracle::mesh(&case.tree, &case.operands()));
+        let crossings = check::crossing::crossings(&oracle::mesh(&case.tree, &case.operands()));
         assert_eq!(crossings.crossing, 0, "seed {seed}: {crossings:?}");
     }
 }
 
+type Spoil = fn(Mesh) -> Mesh;
+
 /// Kernels that are wrong in one way each are caught.
 #[test]
 fn wrong_kernels_are_caught() {
-    let spoil: [(&str, fn(Mesh) -> Mesh); 5] = [
+    let spoil: [(&str, Spoil); 5] = [
         ("loses a triangle", |mut mesh| {
             mesh.triangles.pop();
             mesh

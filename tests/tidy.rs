@@ -16,6 +16,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("serde_json", &["io", "cli"]),
     ("siphasher", &["numeric/hash.rs"]),
     ("spade", &["polygon/triangulate.rs"]),
+    ("stacker", &["script/stack.rs"]),
 ];
 
 /// Modules in the order `lib.rs` declares them, each with the layer comment it stands under.

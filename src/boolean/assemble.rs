@@ -174,7 +174,7 @@ impl Rims {
             let Carrier { chart, lines, .. } = &carriers.carriers[face.carrier as usize];
             let boundary = self.boundary_in_chart(face, index);
             let members = &self.of_face[index];
-            for (&rim, next) in members.iter().zip(followers(chart, &scene.points, lines, &boundary)) {
+            for (&rim, next) in members.iter().zip(followers(chart, scene.points(), lines, &boundary)) {
                 let (before, after) =
                     if face.outward { (rim, members[next as usize]) } else { (members[next as usize], rim) };
                 self.rims[before as usize].next = after;
@@ -243,8 +243,8 @@ impl Rims {
         }
         let chart = &carriers.carriers[faces.faces[here.face as usize].carrier as usize].chart;
         let ([from, middle], to) = (here.ends, next.ends[1]);
-        chart.orientation(&scene.points, from, middle, to) == 0
-            && chart.compare(&scene.points, from, middle) == chart.compare(&scene.points, middle, to)
+        chart.orientation(scene.points(), from, middle, to) == 0
+            && chart.compare(scene.points(), from, middle) == chart.compare(scene.points(), middle, to)
     }
 }
 
@@ -320,7 +320,7 @@ impl Surface {
             boundary.iter().zip(&rims.of_face[face]).map(|(edge, &rim)| (edge.ends, rim)).collect();
         rim_of.sort_unstable();
         let mut inner: Vec<([PointId; 2], u32)> = Vec::new();
-        for [a, b, c] in triangulate(chart, &scene.points, lines, &boundary) {
+        for [a, b, c] in triangulate(chart, scene.points(), lines, &boundary) {
             let triangle = self.push(if outward { [a, b, c] } else { [b, a, c] }, birth);
             let sides = if outward { [0, 1, 2] } else { [0, 2, 1] };
             for (ends, side) in [[a, b], [b, c], [c, a]].into_iter().zip(sides) {
@@ -369,9 +369,10 @@ impl Surface {
         let (vertices, count) = fans(&self.twins);
         let mut positions = vec![Vec3::ZERO; count as usize];
         for (&point, &vertex) in self.corners.iter().flatten().zip(&vertices) {
-            positions[vertex as usize] = scene.position(point);
+            positions[vertex as usize] = scene.places.position(point);
         }
-        let embedded = scene.is_exact() && self.corners.iter().flatten().all(|&point| scene.is_given(point));
+        let embedded = scene.places.is_exact()
+            && self.corners.iter().flatten().all(|&point| scene.places.is_given(point));
         let mut mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
         let mut birth = self.birth;
         part_double_edges(&mut mesh, self.twins, &mut birth);

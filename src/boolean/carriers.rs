@@ -88,7 +88,7 @@ impl Drafts {
     /// Adds the sides of a triangle that do not continue in its plane.
     fn add_sides(&mut self, scene: &Scene, triangle: u32) {
         let (home, outward) = self.home[&triangle];
-        let Scene { triangles, twins, points, .. } = scene;
+        let Scene { triangles, twins, .. } = scene;
         let owner = &triangles[triangle as usize];
         for side in 0..3 {
             let twin = twins[3 * triangle as usize + side];
@@ -97,7 +97,7 @@ impl Drafts {
             }
             let (from, to) = (owner.corners[side], owner.corners[(side + 1) % 3]);
             let draft = &mut self.drafts[home as usize];
-            let line = draft.chart.line_through(points, from, to).expect("sides have length");
+            let line = draft.chart.line_through(scene.points(), from, to).expect("sides have length");
             let line = draft.add_line(line);
             // Seen against its normal a triangle runs clockwise and counts as uncovering what is on its left.
             let (ends, amount) = if outward { ([from, to], 1) } else { ([to, from], -1) };
@@ -149,7 +149,7 @@ impl Draft {
         self.marks.sort_unstable();
         self.marks.dedup();
         let Draft { chart, lines, segments, marks, .. } = self;
-        let overlay = overlay(&chart, &mut scene.points, &lines, &segments, &marks);
+        let overlay = overlay(&chart, &mut scene.places.points, &lines, &segments, &marks);
         let births = find_births(scene, &chart, &overlay);
         Carrier { chart, lines, overlay, births, first_cell: 0 }
     }
@@ -199,7 +199,7 @@ fn find_births(scene: &Scene, chart: &Chart, overlay: &Overlay) -> Vec<Option<Bi
 /// Whether the triangle behind a jump lies above the edge: coverage then grows upward with its own sign.
 fn lies_above(scene: &Scene, chart: &Chart, jump: &Jump) -> bool {
     let [a, b, c] = scene.triangles[jump.face as usize].corners;
-    chart.orientation(&scene.points, a, b, c) == jump.amount
+    chart.orientation(scene.points(), a, b, c) == jump.amount
 }
 
 impl Carrier {

@@ -48,9 +48,9 @@ fn candidates(scene: &Scene) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
     for (i, j) in pairs {
         if i == j {
-            let own = Part::of(scene, i, Aabb::EMPTY.union(boxes[i as usize]));
+            let own = Part::of(scene, i, boxes[i as usize]);
             own.bvh.self_pairs(&own.boxes, |a, b| {
-                found.push([own.triangles[a as usize], own.triangles[b as usize]])
+                found.push([own.triangles[a as usize], own.triangles[b as usize]]);
             });
         } else {
             let overlap = boxes[i as usize].intersection(boxes[j as usize]);
@@ -90,7 +90,7 @@ impl Contacts {
     /// Records what triangles `t` and `s` have in common.
     fn examine(&mut self, scene: &mut Scene, t: u32, s: u32) {
         let plane_t = *scene.own_plane(t);
-        let sides_s = sides(scene, &plane_t, s);
+        let sides_s = sides(scene, &plane_t, t, s);
         if all_on_one_side(sides_s) {
             return;
         }
@@ -102,7 +102,7 @@ impl Contacts {
             return;
         }
         let plane_s = *scene.own_plane(s);
-        let sides_t = sides(scene, &plane_s, t);
+        let sides_t = sides(scene, &plane_s, s, t);
         if all_on_one_side(sides_t) || meet_only_at_shared_corners(scene, [t, s], [sides_t, sides_s]) {
             return;
         }
@@ -131,7 +131,7 @@ impl Contacts {
                     continue;
                 }
                 let opposite = scene.triangles[twin as usize / 3].corners[(twin as usize + 2) % 3];
-                if plane.side(&scene.points, opposite) == 0 {
+                if plane.side(scene.points(), opposite) == 0 {
                     self.touched[twin as usize / 3] = true;
                     stack.push(twin / 3);
                 }
@@ -140,8 +140,11 @@ impl Contacts {
     }
 }
 
-fn sides(scene: &Scene, plane: &Plane, triangle: u32) -> [i32; 3] {
-    scene.triangles[triangle as usize].corners.map(|p| plane.side(&scene.points, p))
+/// On which sides of the plane of one triangle the corners of another lie.
+fn sides(scene: &Scene, plane: &Plane, of: u32, triangle: u32) -> [i32; 3] {
+    let own = scene.triangles[of as usize].corners;
+    let side = |p: PointId| if own.contains(&p) { 0 } else { plane.side(scene.points(), p) };
+    scene.triangles[triangle as usize].corners.map(side)
 }
 
 fn all_on_one_side(sides: [i32; 3]) -> bool {
@@ -157,7 +160,7 @@ fn are_unfolded_neighbours(scene: &Scene, t: u32, s: u32) -> bool {
                 |h: u32, ahead: u32| scene.triangles[h as usize / 3].corners[((h % 3 + ahead) % 3) as usize];
             let (a, b) = (corner(half_edge, 0), corner(half_edge, 1));
             (0..3).any(|axis| {
-                let side = |c: PointId| scene.points.orientation(a, b, c, axis);
+                let side = |c: PointId| scene.points().orientation(a, b, c, axis);
                 side(corner(half_edge, 2)) * side(corner(twin, 2)) < 0
             })
         }
@@ -208,7 +211,7 @@ fn section(scene: &mut Scene, triangle: u32, sides: [i32; 3], plane: &Plane) -> 
             add(corners[i]);
         }
         if sides[i] * sides[j] < 0 {
-            add(scene.points.crossing(corners[i], corners[j], plane));
+            add(scene.places.points.crossing(corners[i], corners[j], plane));
         }
     }
     let first = ends[0].expect("the triangle meets the plane");
@@ -218,6 +221,6 @@ fn section(scene: &mut Scene, triangle: u32, sides: [i32; 3], plane: &Plane) -> 
 
 /// Orders points of one line along it.
 fn along(scene: &Scene, a: PointId, b: PointId) -> Ordering {
-    let by = |axis: usize| scene.points.compare(a, b, axis);
+    let by = |axis: usize| scene.points().compare(a, b, axis);
     by(0).then_with(|| by(1)).then_with(|| by(2))
 }

@@ -114,9 +114,24 @@ pub fn evaluate<'a, T>(tree: &Tree, operands: &[T]) -> Result<Combined, BooleanE
 where
     T: Copy + Into<Operand<'a>>,
 {
+    evaluate_on_grid(tree, operands, 0.0)
+}
+
+/// [`evaluate`] with all coordinates first rounded to multiples of a power of two that is at most `resolution`, so that
+/// parts which were meant to be flush, and miss each other by rounding errors, are.
+///
+/// A resolution finer than that of [`evaluate`], 0 or less or NaN changes nothing. Vertices that do not meet another
+/// operand keep their positions all the same.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn evaluate_on_grid<'a, T>(tree: &Tree, operands: &[T], resolution: f64) -> Result<Combined, BooleanError>
+where
+    T: Copy + Into<Operand<'a>>,
+{
     let operands: Vec<Operand<'a>> = operands.iter().map(|&operand| operand.into()).collect();
     check(tree, &operands)?;
-    let mut scene = scene::Scene::new(&operands);
+    let mut scene = scene::Scene::new(&operands, resolution);
     let contacts = contacts::find(&mut scene);
     let carriers = carriers::cut(&mut scene, contacts);
     let regions = regions::classify(&scene, &carriers, tree);

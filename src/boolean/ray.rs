@@ -36,7 +36,7 @@ impl<'a> RayCaster<'a> {
     pub(super) fn cast(&mut self, anchor: &Anchor) -> (bool, Vec<(u32, i32)>) {
         // Above the plane, or, when that stands upright, to where the ray is moved.
         let side = [2, 0, 1].map(|axis| anchor.plane.normal_sign(axis)).into_iter().find(|&sign| sign != 0);
-        let start = Start::new(&self.scene.points, anchor.corners);
+        let start = Start::new(self.scene.points(), anchor.corners);
         let column = start.column();
         let mut near = Vec::new();
         self.members.touching(&self.boxes, column, |member| near.push(member));

@@ -66,7 +66,7 @@ pub(super) fn classify(scene: &Scene, carriers: &Carriers, tree: &Tree) -> Regio
     fins.sort_by_key(|fin| fin.ends);
     let edges = edge_ranges(&fins);
     for range in &edges {
-        sort_radially(&scene.points, &planes, &mut fins[range.start as usize..range.end as usize]);
+        sort_radially(scene.points(), &planes, &mut fins[range.start as usize..range.end as usize]);
     }
     let (region_of_side, region_count) = join_regions(&fins, &edges, patches.cell_count);
     let links = links(scene, carriers, &patches, &region_of_side);
@@ -307,7 +307,7 @@ fn anchor(scene: &Scene, carriers: &Carriers, patches: &Patches, cell: u32) -> A
     let home = carriers.carriers.partition_point(|carrier| carrier.first_cell <= cell) - 1;
     let carrier = &carriers.carriers[home];
     let boundary = boundary_of(carrier, cell - carrier.first_cell);
-    let triangles = triangulate(&carrier.chart, &scene.points, &carrier.lines, &boundary);
+    let triangles = triangulate(&carrier.chart, scene.points(), &carrier.lines, &boundary);
     Anchor { corners: triangles[0], plane: *carrier.chart.plane() }
 }
 

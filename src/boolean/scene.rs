@@ -1,8 +1,8 @@
 //! Operands on one lattice.
 
-use crate::math::{Aabb, Vec3};
+use crate::math::Aabb;
 use crate::mesh::{Mesh, Solid, Topology};
-use crate::polygon::exact::{Lattice, Plane, PointId, Points, Site};
+use crate::polygon::exact::{Plane, PointId, Points, Site, Snapped};
 use std::collections::HashMap;
 
 /// An operand of a boolean: a mesh and what is known of it.
@@ -59,12 +59,7 @@ pub(super) struct Member {
 /// All operands together. Half-edge `3 t + i` is side `i` of triangle `t`.
 #[derive(Debug)]
 pub(super) struct Scene {
-    pub(super) points: Points,
-    lattice: Lattice,
-    /// For the points that are vertices of operands, their positions as given.
-    given: Vec<Vec3>,
-    /// Whether all of them lie on the lattice.
-    exact: bool,
+    pub(super) places: Snapped,
     pub(super) triangles: Vec<Triangle>,
     /// The other half-edge of each edge, or [`Topology::NONE`] where there is other than one.
     pub(super) twins: Vec<u32>,
@@ -76,15 +71,12 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    /// Snaps all operands to the finest lattice for them. Triangles without area on the lattice are dropped.
-    pub(super) fn new(operands: &[Operand<'_>]) -> Scene {
+    /// Snaps all operands to the finest lattice for them, or to one as coarse as `resolution` allows. Triangles without area on the lattice are dropped.
+    pub(super) fn new(operands: &[Operand<'_>], resolution: f64) -> Scene {
         let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
         let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
         let mut scene = Scene {
-            points: Points::default(),
-            lattice: Lattice::fitting(largest),
-            given: Vec::new(),
-            exact: true,
+            places: Snapped::new(largest, resolution),
             triangles: Vec::new(),
             twins: Vec::new(),
             members: Vec::new(),
@@ -100,7 +92,7 @@ impl Scene {
 
     fn add(&mut self, index: u32, operand: &Operand<'_>) {
         let mesh = operand.mesh;
-        let ids: Vec<PointId> = mesh.positions.iter().map(|&p| self.add_vertex(p)).collect();
+        let ids: Vec<PointId> = mesh.positions.iter().map(|&p| self.places.add(p)).collect();
         let first = self.triangles.len() as u32;
         let mut slots = vec![Topology::NONE; mesh.triangles.len()];
         for (t, triangle) in (0_u32..).zip(&mesh.triangles) {
@@ -123,54 +115,30 @@ impl Scene {
         let triangles = first..self.triangles.len() as u32;
         let whole = triangles.len() == mesh.triangles.len();
         let corners = self.triangles[first as usize..].iter().flat_map(|t| t.corners);
-        let bounds = Aabb::of(corners.map(|p| self.points.rounded(p)));
+        let bounds = Aabb::of(corners.map(|p| self.points().rounded(p)));
         let material = operand.material;
         self.members.push(Member { triangles, bounds, embedded: operand.embedded && whole, material });
     }
 
-    fn add_vertex(&mut self, position: Vec3) -> PointId {
-        let id = self.points.site(self.lattice.snap(position));
-        self.exact &= self.lattice.to_model(self.points.rounded(id)) == position;
-        match self.given.get_mut(id.0 as usize) {
-            // Several positions may share a lattice point; which one stands for it must not depend on their order.
-            Some(known) => *known = lesser(*known, position),
-            None => self.given.push(position),
-        }
-        id
-    }
-
-    /// The position of a point in model units.
-    pub(super) fn position(&self, point: PointId) -> Vec3 {
-        match self.given.get(point.0 as usize) {
-            Some(&given) => given,
-            None => self.lattice.to_model(self.points.rounded(point)),
-        }
-    }
-
-    /// Whether all vertices of operands lie on the lattice as they were given.
-    pub(super) fn is_exact(&self) -> bool {
-        self.exact
-    }
-
-    /// Whether the point is a vertex of an operand.
-    pub(super) fn is_given(&self, point: PointId) -> bool {
-        (point.0 as usize) < self.given.len()
+    /// The points of the scene.
+    pub(super) fn points(&self) -> &Points {
+        &self.places.points
     }
 
     /// The box of a triangle, in lattice units.
     pub(super) fn bounds_of(&self, triangle: u32) -> Aabb {
-        Aabb::of(self.triangles[triangle as usize].corners.map(|p| self.points.rounded(p)))
+        Aabb::of(self.triangles[triangle as usize].corners.map(|p| self.points().rounded(p)))
     }
 
     /// The integer corners of a triangle.
     pub(super) fn sites_of(&self, triangle: u32) -> [Site; 3] {
         self.triangles[triangle as usize]
             .corners
-            .map(|p| self.points.as_site(p).expect("vertices of operands are sites"))
+            .map(|p| self.points().as_site(p).expect("vertices of operands are sites"))
     }
 
     fn has_area(&self, corners: [PointId; 3]) -> bool {
-        (0..3).any(|axis| self.points.orientation(corners[0], corners[1], corners[2], axis) != 0)
+        (0..3).any(|axis| self.points().orientation(corners[0], corners[1], corners[2], axis) != 0)
     }
 
     /// The plane of a triangle, its normal outward.
@@ -218,10 +186,4 @@ impl PlaneTable {
         self.planes.push(if outward { *plane } else { plane.flipped() });
         (index, outward)
     }
-}
-
-/// The first of two positions in lexicographic order.
-fn lesser(a: Vec3, b: Vec3) -> Vec3 {
-    let order = a.to_array().iter().zip(b.to_array()).map(|(x, y)| x.total_cmp(&y)).find(|o| o.is_ne());
-    if order == Some(std::cmp::Ordering::Greater) { b } else { a }
 }

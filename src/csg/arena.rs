@@ -3,9 +3,10 @@
 use super::bounds::local_bounds;
 use super::{Body, Csg, Dimension, Flat};
 use crate::boolean::Op;
-use crate::math::Aabb;
+use crate::math::{Aabb, Vec2, Vec3};
 use crate::numeric::ContentHasher;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// All nodes of a recipe. Subtrees that are shared by pointer are there once.
 pub(super) struct Arena<'a> {
@@ -24,6 +25,8 @@ pub(super) struct Node<'a> {
     /// A box around the shape, in its own coordinates. Plane regions reach from 0 to 1 in z, so that boxes that overlap
     /// do so in their interiors.
     pub(super) bounds: Aabb,
+    /// Number of leaves below, each as often as it occurs.
+    pub(super) leaves: u64,
 }
 
 impl<'a> Arena<'a> {
@@ -37,7 +40,7 @@ impl<'a> Arena<'a> {
                 continue;
             }
             if children_are_in {
-                let number = |child: &std::sync::Arc<Csg>| known[&std::sync::Arc::as_ptr(child)];
+                let number = |child: &Arc<Csg>| known[&Arc::as_ptr(child)];
                 let children = recipe.children().iter().map(number).collect();
                 known.insert(recipe, arena.nodes.len() as NodeId);
                 arena.push(recipe, children);
@@ -74,7 +77,11 @@ impl<'a> Arena<'a> {
         };
         let bounds = local_bounds(recipe, dimension, &children.iter().map(of).collect::<Vec<_>>());
         let key = key(recipe, children.iter().map(|child| of(child).key));
-        self.nodes.push(Node { recipe, children, key, dimension, bounds });
+        let leaves = match recipe {
+            Csg::Flat(_) | Csg::Body(_) => 1,
+            _ => children.iter().fold(0, |sum: u64, child| sum.saturating_add(of(child).leaves)),
+        };
+        self.nodes.push(Node { recipe, children, key, dimension, bounds, leaves });
     }
 }
 
@@ -135,7 +142,7 @@ fn hash_flat(hash: &mut ContentHasher, flat: &Flat) {
             hash.integers([3, contours.len() as u64]);
             for contour in contours.iter() {
                 hash.integers([contour.len() as u64]);
-                hash.numbers(contour.iter().flat_map(|p| p.to_array()));
+                hash.numbers(contour.iter().flat_map(Vec2::to_array));
             }
         }
     }
@@ -157,8 +164,49 @@ fn hash_body(hash: &mut ContentHasher, body: &Body) {
         }
         Body::Mesh(mesh) => {
             hash.integers([13, mesh.positions.len() as u64, mesh.triangles.len() as u64]);
-            hash.numbers(mesh.positions.iter().flat_map(|p| p.to_array()));
+            hash.numbers(mesh.positions.iter().flat_map(Vec3::to_array));
             hash.integers(mesh.triangles.iter().flatten().map(|&v| u64::from(v)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube(min: Vec3) -> Csg {
+        Csg::Body(Body::Cuboid { min, max: Vec3::ONE })
+    }
+
+    #[test]
+    fn keys_tell_contents_apart_and_stay_the_same() {
+        let key = |recipe: &Csg| Arena::new(recipe).root().key;
+        assert_eq!(key(&cube(Vec3::ZERO)), key(&cube(-Vec3::ZERO)));
+        assert_eq!(key(&cube(Vec3::ZERO)), GOLDEN);
+        let pair = |a: &Csg, b: &Csg| Csg::Hull { children: vec![Arc::new(a.clone()), Arc::new(b.clone())] };
+        let (a, b) = (cube(Vec3::ZERO), cube(-Vec3::ONE));
+        let all = [
+            &a,
+            &b,
+            &pair(&a, &b),
+            &pair(&b, &a),
+            &pair(&pair(&a, &b), &a),
+            &pair(&a, &pair(&b, &a)),
+            &Csg::Nothing,
+        ];
+        let keys: std::collections::BTreeSet<u128> = all.into_iter().map(key).collect();
+        assert_eq!(keys.len(), all.len());
+    }
+
+    /// Changes only where the meaning of contents changes.
+    const GOLDEN: u128 = 0x634a8af268552cf6a679738b995939e9;
+
+    #[test]
+    fn shared_subtrees_are_there_once() {
+        let mut recipe = Arc::new(cube(Vec3::ZERO));
+        for _ in 0..100 {
+            recipe = Arc::new(Csg::Hull { children: vec![recipe.clone(), recipe] });
+        }
+        assert_eq!(Arena::new(&recipe).nodes().len(), 101);
     }
 }

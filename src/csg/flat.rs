@@ -6,7 +6,7 @@ use super::plan::{Kind, Plan, Spot};
 use super::solve::Solver;
 use super::{Csg, Flat};
 use crate::boolean::Tree;
-use crate::math::{Affine3, Vec2, unit_circle};
+use crate::math::{Affine3, Vec2, Vec3, unit_circle};
 use crate::polygon::{self, FillRule, Region};
 
 type Contours = Vec<Vec<Vec2>>;
@@ -26,7 +26,7 @@ impl Solver<'_, '_> {
                 let operands: Vec<&[Vec<Vec2>]> = operands.iter().map(Vec::as_slice).collect();
                 self.report.booleans += 1;
                 self.step();
-                Ok(polygon::combine(&operands, |winding| tree.holds(winding)))
+                Ok(polygon::combine(&operands, self.resolution, |winding| tree.holds(winding)))
             }
         }
     }
@@ -73,7 +73,7 @@ impl Solver<'_, '_> {
             }
             Csg::Flat(Flat::Polygon { contours }) => Ok((contours.to_vec(), Some(FillRule::EvenOdd))),
             Csg::Hull { .. } => {
-                let points: Vec<Vec2> = self.hull_points(node)?.into_iter().map(|p| p.truncate()).collect();
+                let points: Vec<Vec2> = self.hull_points(node)?.into_iter().map(Vec3::truncate).collect();
                 Ok((polygon::convex_hull(&points)?.contours().to_vec(), None))
             }
             _ => unreachable!("plans have no such leaf in the plane"),

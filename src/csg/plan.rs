@@ -132,7 +132,10 @@ impl Planner<'_, '_> {
         loop {
             let node = self.arena.get(spot.node);
             match node.recipe {
-                _ if node.dimension.is_none() || node.bounds.is_empty() => return Ok(None),
+                _ if node.bounds.is_empty() => {
+                    self.report.skip(node.leaves);
+                    return Ok(None);
+                }
                 Csg::Transform { map, .. } => {
                     let map = if node.dimension == Some(Dimension::Two) { plane_part(map) } else { *map };
                     if map.matrix3.determinant() == 0.0 {
@@ -332,8 +335,9 @@ fn shifted(plan: Plan, offset: Vec3) -> Plan {
 /// The plan without what cannot matter inside `window`, or `None` where nothing can.
 fn prune(plan: Plan, window: Aabb, report: &mut Report) -> Option<Plan> {
     let bounds = plan.bounds;
-    if !overlap(bounds, window) {
-        report.skipped += leaves(&plan);
+    // Where all is seen, what has no volume is built even so: it may be wrong, and that is to be said.
+    if window != EVERYWHERE && !overlap(bounds, window) {
+        report.skip(leaves(&plan));
         return None;
     }
     match plan.kind {

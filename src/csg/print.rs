@@ -125,9 +125,11 @@ fn linear_call(sweep: &LinearSweep) -> String {
 
 fn rotate_call(sweep: &RotateSweep) -> String {
     let (angle, start) = (degrees(sweep.angle), degrees(sweep.start));
-    // The language takes the number of steps of a full turn, and a share of it for a part of one.
-    let around = (f64::from(sweep.fragments) * 360.0 / angle.abs().min(360.0)).floor();
-    let around = if around.is_finite() { around } else { f64::from(sweep.fragments) };
+    // The language takes the number of steps of a full turn, of which a part of it has its share, rounded down.
+    let share = (angle.abs() / 360.0).min(1.0);
+    let steps = f64::from(sweep.fragments);
+    let fewest = if share > 0.0 { (steps / share).ceil() } else { steps };
+    let around = if (fewest * share).trunc() < steps { fewest + 1.0 } else { fewest };
     format!("rotate_extrude(angle = {}, start = {}, $fn = {})", number(angle), number(start), number(around))
 }
 

@@ -18,6 +18,8 @@ pub(super) struct Solver<'a, 'b> {
     pub(super) uses: &'a Uses,
     pub(super) report: Report,
     options: &'a BuildOptions,
+    /// What is below this is a rounding error, in model units.
+    pub(super) resolution: f64,
     progress: &'a mut dyn FnMut(Progress),
     steps: Progress,
     spent: u64,
@@ -72,6 +74,7 @@ impl<'a, 'b> Solver<'a, 'b> {
             uses,
             report,
             options,
+            resolution: options.resolution * arena.root().bounds.size().max_element(),
             progress,
             steps: Progress { done: 0, total },
             spent: 0,
@@ -124,12 +127,12 @@ impl<'a, 'b> Solver<'a, 'b> {
         match &plan.kind {
             Kind::Leaf(spot) => {
                 let part = self.part(*spot)?;
-                if part.leaf.clean { Ok(part) } else { self.evaluate(&Tree::Leaf(0), vec![part]) }
+                if part.leaf.clean { Ok(part) } else { self.evaluate(&Tree::Leaf(0), &[part]) }
             }
             Kind::Frame { map, inner } => moved(self.solve(inner)?, map),
             Kind::Node { op: Op::Union, parts, .. } => {
                 let mut solved = Vec::new();
-                for cluster in clusters(parts) {
+                for cluster in clusters(parts, self.resolution) {
                     solved.push(match cluster[..] {
                         [part] => self.solve(part)?,
                         _ => self.boolean(Op::Union, &cluster)?,
@@ -173,7 +176,7 @@ impl<'a, 'b> Solver<'a, 'b> {
         let mut operands = Vec::new();
         let trees: Result<Vec<Tree>, BuildError> =
             plans.iter().map(|plan| self.tree(plan, &mut operands)).collect();
-        self.evaluate(&Tree::Node(op, trees?), operands)
+        self.evaluate(&Tree::Node(op, trees?), &operands)
     }
 
     /// The plan as an expression over operands, which are appended.
@@ -203,11 +206,11 @@ impl<'a, 'b> Solver<'a, 'b> {
         self.check_limit(self.spent)
     }
 
-    fn evaluate(&mut self, tree: &Tree, parts: Vec<Part>) -> Result<Part, BuildError> {
-        let materials = materials(&parts);
+    fn evaluate(&mut self, tree: &Tree, parts: &[Part]) -> Result<Part, BuildError> {
+        let materials = materials(parts);
         let operands: Vec<Operand<'_>> =
             parts.iter().zip(&materials).map(|(part, &m)| part.operand().with_material(m)).collect();
-        let combined = boolean::evaluate(tree, &operands)?;
+        let combined = boolean::evaluate_on_grid(tree, &operands, self.resolution)?;
         self.report.booleans += 1;
         self.step();
         self.check_limit(combined.solid.triangles().len() as u64)?;
@@ -321,9 +324,10 @@ fn is_exact(map: &Affine3, positions: &[Vec3]) -> bool {
     units && positions.iter().all(|&p| rounding(linear * p) == Vec3::ZERO)
 }
 
-/// Parts gathered so that boxes of different clusters have no point in common. Clusters and their parts keep their order.
-fn clusters(parts: &[Plan]) -> Vec<Vec<&Plan>> {
-    let boxes: Vec<Aabb> = parts.iter().map(|part| widened(part.bounds, 0.0)).collect();
+/// Parts gathered so that different clusters are more than `gap` apart. Clusters and their parts keep their order.
+fn clusters(parts: &[Plan], gap: f64) -> Vec<Vec<&Plan>> {
+    let wide = |bounds: Aabb| Aabb { min: bounds.min - Vec3::splat(gap), max: bounds.max + Vec3::splat(gap) };
+    let boxes: Vec<Aabb> = parts.iter().map(|part| wide(widened(part.bounds, 0.0))).collect();
     let mut order: Vec<usize> = (0..parts.len()).collect();
     order.sort_by(|&a, &b| boxes[a].min.x.total_cmp(&boxes[b].min.x));
     let mut sets = DisjointSets::new(parts.len());

@@ -1,3 +1,4 @@
+use super::text::Shortest;
 use crate::math::Vec3;
 use crate::mesh::Mesh;
 use std::{fmt, io};
@@ -163,7 +164,8 @@ impl fmt::Display for WriteError {
                 write!(f, "triangle {triangle} names vertex {vertex}, there are {count}")
             }
             WriteError::NotInFormat { vertex, position: p } => {
-                write!(f, "vertex {vertex} at ({}, {}, {}) does not fit the format's f32", p.x, p.y, p.z)
+                let [x, y, z] = p.to_array().map(Shortest);
+                write!(f, "vertex {vertex} at ({x}, {y}, {z}) does not fit the format's f32")
             }
         }
     }

@@ -8,6 +8,8 @@
 //! | OFF | any of the ASCII kinds in three dimensions; normals and colours are passed over | text, same bits |
 //! | PLY | ASCII, binary in both byte orders; what is not a position or a face is passed over | `f64`, same bits |
 //!
+//! Pictures are written as PNG.
+//!
 //! Polygons become triangles in their own plane, also where they are not convex.
 
 mod error;
@@ -15,6 +17,7 @@ mod facets;
 pub mod obj;
 pub mod off;
 pub mod ply;
+pub mod png;
 pub mod stl;
 mod text;
 mod weld;

@@ -1,6 +1,6 @@
 use super::Region;
 use super::exact::{
-    Boundary, Chart, Jump, Lattice, Line, Plane, PointId, Points, Segment, followers, overlay,
+    Boundary, Chart, Jump, Line, Plane, PointId, Points, Segment, Snapped, followers, overlay,
 };
 use crate::math::Vec2;
 
@@ -29,24 +29,24 @@ impl FillRule {
 /// The region where `inside` holds of the winding numbers of all operands, each a set of closed contours.
 ///
 /// `inside` is given the operands that wind around a place, sorted, each with how often; it must not hold where none
-/// does. Exact but for the positions of new vertices, which are rounded to doubles; coordinates must be finite.
-pub fn combine(operands: &[&[Vec<Vec2>]], inside: impl Fn(&[(u32, i32)]) -> bool) -> Region {
+/// does. Coordinates must be finite; they are first rounded to multiples of a power of two that is at most `resolution`
+/// (0 for the finest lattice), so that edges which were meant to coincide do. From there on all is exact but for the
+/// positions of new vertices, which are rounded to doubles; others keep theirs.
+pub fn combine(operands: &[&[Vec<Vec2>]], resolution: f64, inside: impl Fn(&[(u32, i32)]) -> bool) -> Region {
     let coordinates = operands.iter().copied().flatten().flatten();
     let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.x.abs()).max(p.y.abs()));
-    let lattice = Lattice::fitting(largest);
-    let mut points = Points::default();
+    let mut places = Snapped::new(largest, resolution);
     let chart = Chart::new(&Plane::through([0, 0, 0], [1, 0, 0], [0, 1, 0]).expect("the plane z = 0"));
 
     let mut lines = Vec::new();
     let mut segments = Vec::new();
     for (operand, contours) in (0..).zip(operands) {
         for contour in *contours {
-            let ids: Vec<PointId> =
-                contour.iter().map(|p| points.site(lattice.snap(p.extend(0.0)))).collect();
-            add_contour(&chart, &points, &ids, operand, &mut lines, &mut segments);
+            let ids: Vec<PointId> = contour.iter().map(|p| places.add(p.extend(0.0))).collect();
+            add_contour(&chart, &places.points, &ids, operand, &mut lines, &mut segments);
         }
     }
-    let cells = overlay(&chart, &mut points, &lines, &segments, &[]);
+    let cells = overlay(&chart, &mut places.points, &lines, &segments, &[]);
     let within: Vec<bool> =
         cells.coverage.iter().map(|winding| !winding.is_empty() && inside(winding)).collect();
     let boundary: Vec<Boundary> = cells
@@ -59,8 +59,8 @@ pub fn combine(operands: &[&[Vec<Vec2>]], inside: impl Fn(&[(u32, i32)]) -> bool
             Boundary { ends, line: edge.line }
         })
         .collect();
-    let contours = walk(&chart, &points, &lines, &boundary);
-    let place = |p: PointId| lattice.to_model(points.rounded(p)).truncate();
+    let contours = walk(&chart, &places.points, &lines, &boundary);
+    let place = |p: PointId| places.position(p).truncate();
     Region::assume(contours.into_iter().map(|contour| contour.into_iter().map(place).collect()).collect())
 }
 
@@ -81,9 +81,10 @@ fn add_contour(
     }
 }
 
-/// The contours of a boundary, without vertices at which they run straight on.
+/// The contours of a boundary, without vertices at which one runs straight on and no other passes.
 fn walk(chart: &Chart, points: &Points, lines: &[Line], boundary: &[Boundary]) -> Vec<Vec<PointId>> {
     let next = followers(chart, points, lines, boundary);
+    let crowded = passed_twice(boundary);
     let mut walked = vec![false; boundary.len()];
     let mut contours = Vec::new();
     for first in 0..boundary.len() {
@@ -93,18 +94,23 @@ fn walk(chart: &Chart, points: &Points, lines: &[Line], boundary: &[Boundary]) -
             contour.push(boundary[edge].ends[0]);
             edge = next[edge] as usize;
         }
-        if !contour.is_empty() {
-            contours.push(without_straight_vertices(chart, points, &contour));
+        let count = contour.len();
+        let is_needed = |&i: &usize| {
+            let (before, after) = (contour[(i + count - 1) % count], contour[(i + 1) % count]);
+            crowded.binary_search(&contour[i]).is_ok()
+                || chart.orientation(points, before, contour[i], after) != 0
+        };
+        if count > 0 {
+            contours.push((0..count).filter(is_needed).map(|i| contour[i]).collect());
         }
     }
     contours
 }
 
-fn without_straight_vertices(chart: &Chart, points: &Points, contour: &[PointId]) -> Vec<PointId> {
-    let count = contour.len();
-    let turns = |&i: &usize| {
-        let (before, after) = (contour[(i + count - 1) % count], contour[(i + 1) % count]);
-        chart.orientation(points, before, contour[i], after) != 0
-    };
-    (0..count).filter(turns).map(|i| contour[i]).collect()
+/// The points, sorted, from which more than one boundary edge starts.
+fn passed_twice(boundary: &[Boundary]) -> Vec<PointId> {
+    let mut starts: Vec<PointId> = boundary.iter().map(|edge| edge.ends[0]).collect();
+    starts.sort_unstable();
+    let crowded = starts.chunk_by(|a, b| a == b).filter(|group| group.len() > 1);
+    crowded.map(|group| group[0]).collect()
 }

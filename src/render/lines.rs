@@ -1,7 +1,7 @@
 //! Sharp edges as lines of even width, hidden where something is in front of them.
 
 use super::camera::{SUBPIXELS, ScreenPoint};
-use super::raster::{NOBODY, NearnessPlane, SAMPLES, TILE, Tile, clipped, sample_offset};
+use super::raster::{NOBODY, NearnessPlane, TILE, Tile, clipped, sample_offset};
 use super::scene::{Bins, Scene};
 use crate::par;
 
@@ -63,14 +63,13 @@ impl Lines {
         let owners = tile.triangles_at(x, y);
         let mut plane: Option<(u32, Option<NearnessPlane>)> = None;
         let mut bits = 0;
-        for sample in 0..SAMPLES {
+        for (sample, &owner) in owners.iter().enumerate() {
             let offset = sample_offset(sample);
             let Some((place, nearness)) =
                 segment.closest([corner[0] + offset[0], corner[1] + offset[1]], self.radius)
             else {
                 continue;
             };
-            let owner = owners[sample];
             if plane.is_none_or(|(of, _)| of != owner) && owner != NOBODY {
                 plane = Some((owner, scene.plane_of(owner)));
             }

@@ -25,6 +25,8 @@ mod lines;
 mod occlusion;
 mod raster;
 mod scene;
+#[cfg(test)]
+mod tests;
 
 pub use camera::{Camera, Fit, Projection};
 
@@ -32,7 +34,7 @@ use crate::math::{Aabb, Vec3};
 use crate::mesh::Mesh;
 use crate::par;
 use camera::View;
-use color::{Light, add, decode, encode, mix};
+use color::{Encoder, Light, add, decode, mix};
 use film::{Film, Pixel};
 use ground::Ground;
 use lines::Lines;
@@ -53,11 +55,11 @@ pub struct Style {
     pub edges: Option<Edges>,
     /// Colour behind everything; `None` is transparent.
     pub background: Option<[f32; 3]>,
-    /// Colour and opacity of triangles where `colors` says nothing. Opacity is the share of a pixel's samples that a
+    /// Colour and opacity of triangles that have none of their own. Opacity is the share of a pixel's samples that a
     /// surface covers, in sixteenths.
     pub material: [f32; 4],
-    /// Colour and opacity of each triangle; empty, or one for each.
-    pub colors: Vec<[f32; 4]>,
+    /// Colour and opacity of each triangle, `None` for the material; empty, or one for each.
+    pub colors: Vec<Option<[f32; 4]>>,
     /// Whether corners get less ambient light.
     pub occlusion: bool,
     /// Whether the model throws a soft shadow on the ground at its lowest point.
@@ -89,7 +91,7 @@ impl Default for Style {
             crease: std::f64::consts::PI / 6.0,
             edges: None,
             background: Some([0.965, 0.961, 0.953]),
-            material: [0.80, 0.785, 0.76, 1.0],
+            material: [0.79, 0.767, 0.735, 1.0],
             colors: Vec::new(),
             occlusion: true,
             shadow: true,
@@ -218,6 +220,7 @@ fn develop(
     ground: Option<&Ground>,
 ) -> Image {
     let background = style.background.map(decode);
+    let encoder = Encoder::new();
     let line_color = style.edges.map_or([0.0; 3], |edges| decode(edges.color));
     let rows: Vec<usize> = (0..film.height).collect();
     let pixel = |x: usize, y: usize| {
@@ -229,28 +232,29 @@ fn develop(
             }
             _ => 0.0,
         };
-        finish(pixel, light, darkness, background, line_color)
+        let (light, opacity) = finish(pixel, light, darkness, background, line_color);
+        let [r, g, b] = encoder.encode(light);
+        [r, g, b, (opacity * 255.0).round() as u8]
     };
     let pixels =
         par::map_above(2, &rows, |&y| (0..film.width).map(|x| pixel(x, y)).collect::<Vec<_>>()).concat();
     Image { width: style.width, height: style.height, pixels }
 }
 
-/// Surface over shadowed ground or nothing, lines over both.
+/// Surface over shadowed ground or nothing, lines over both: a colour and its opacity.
 fn finish(
     pixel: &Pixel,
     ambient: f32,
     darkness: f32,
     background: Option<Light>,
     line_color: Light,
-) -> [u8; 4] {
-    let surface = add(pixel.direct, pixel.ambient, ambient);
+) -> (Light, f32) {
+    // A corner that gets little from the sky gets less from the lamps too, which are no points.
+    let surface = add(pixel.direct.map(|x| x * (0.5 + 0.5 * ambient)), pixel.ambient, ambient);
     let free = 1.0 - pixel.coverage;
     let behind = background.unwrap_or([0.0; 3]);
     let opacity = if background.is_some() { 1.0 } else { pixel.coverage + free * darkness };
     let light = mix(add(surface, behind, free * (1.0 - darkness)), line_color, pixel.line);
     let opacity = opacity + (1.0 - opacity) * pixel.line;
-    let light = if opacity > 0.0 { light.map(|c| c / opacity) } else { light };
-    let [r, g, b] = encode(light);
-    [r, g, b, (opacity * 255.0).round() as u8]
+    (if opacity > 0.0 { light.map(|c| c / opacity) } else { light }, opacity)
 }

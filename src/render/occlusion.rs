@@ -16,7 +16,7 @@ const TAPS: usize = 14;
 const BLOCK: usize = 4;
 
 /// How dark a corner gets.
-const STRENGTH: f64 = 2.6;
+const STRENGTH: f64 = 3.6;
 
 /// Sines of angles above the tangent plane that take no light: rounding must not darken flat faces.
 const LEVEL: f64 = 0.03;
@@ -82,13 +82,15 @@ fn surface(film: &Film, view: &View, x: i64, y: i64) -> Option<(Vec3, Vec3)> {
 /// The mean over a block of pixels of the same surface.
 fn average(film: &Film, raw: &[Vec<f32>], radius: f64, x: usize, y: usize) -> f32 {
     let Some(here) = film.at(x as i64, y as i64).filter(|pixel| pixel.depth.is_finite()) else { return 1.0 };
+    let block = |k: usize, end: usize| (k + 1).saturating_sub(BLOCK / 2)..(k + 1 + BLOCK / 2).min(end);
+    let columns = block(x, film.width);
     let (mut sum, mut count) = (0.0, 0.0);
-    for v in (y + 1).saturating_sub(BLOCK / 2)..(y + 1 + BLOCK / 2).min(film.height) {
-        for u in (x + 1).saturating_sub(BLOCK / 2)..(x + 1 + BLOCK / 2).min(film.width) {
-            let other = &film.pixels[v * film.width + u];
+    for row in block(y, film.height) {
+        let pixels = &film.pixels[row * film.width..][columns.clone()];
+        for (other, light) in pixels.iter().zip(&raw[row][columns.clone()]) {
             let facing: f32 = (0..3).map(|i| here.normal[i] * other.normal[i]).sum();
             if f64::from((other.depth - here.depth).abs()) < 0.25 * radius && facing > 0.8 {
-                sum += raw[v][u];
+                sum += light;
                 count += 1.0;
             }
         }

@@ -236,3 +236,39 @@ pub(super) fn clipped(view: &View, triangle: [Vec3; 3]) -> Vec<ScreenPoint> {
     }
     polygon.into_iter().map(|p| view.project_clipped(p)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Points on the grid that samples lie on, so that edges run through samples.
+    fn on_samples([x, y]: [i32; 2]) -> ScreenPoint {
+        let unit = SUBPIXELS / 32;
+        ScreenPoint { x: x * unit, y: y * unit, nearness: 1.0 }
+    }
+
+    proptest! {
+        /// Triangles about an inner point of a rectangle cover each of its samples once, in either direction.
+        #[test]
+        fn triangles_about_a_point_share_no_sample(
+            x in 1..159_i32, y in 1..159_i32, along in prop::collection::btree_set(1..159_i32, 4..12), turned in any::<bool>(),
+        ) {
+            let mut border: Vec<[i32; 2]> = vec![[0, 0], [160, 0]];
+            border.extend(along.iter().map(|&k| [160, k]));
+            border.extend([[160, 160], [0, 160]]);
+            border.extend(along.iter().rev().map(|&k| [0, k]));
+            let fan: Vec<Setup> = (0..border.len())
+                .filter_map(|i| {
+                    let [p, q, r] = [border[i], border[(i + 1) % border.len()], [x, y]].map(on_samples);
+                    Setup::new(if turned { [p, r, q] } else { [p, q, r] })
+                })
+                .collect();
+            for pixel in (0..5).flat_map(|row| (0..5).map(move |column| [column, row])) {
+                let covered: Vec<u16> = fan.iter().map(|setup| setup.coverage(pixel)).collect();
+                prop_assert_eq!(covered.iter().fold(0, |all, bits| all | bits), u16::MAX);
+                prop_assert_eq!(covered.iter().map(|bits| bits.count_ones()).sum::<u32>(), SAMPLES as u32);
+            }
+        }
+    }
+}

@@ -26,12 +26,12 @@ pub(super) struct Scene<'a> {
 /// Colour and opacity of triangles.
 struct Paint {
     material: (Light, f32),
-    of_triangle: Vec<(Light, f32)>,
+    of_triangle: Vec<Option<(Light, f32)>>,
 }
 
 impl Paint {
     fn of(&self, triangle: u32) -> (Light, f32) {
-        self.of_triangle.get(triangle as usize).copied().unwrap_or(self.material)
+        self.of_triangle.get(triangle as usize).copied().flatten().unwrap_or(self.material)
     }
 }
 
@@ -61,7 +61,10 @@ impl<'a> Scene<'a> {
         let needs_creases = style.crease > 0.0 || style.edges.is_some();
         let creases = needs_creases.then(|| Creases::new(&placed, &mesh.triangles, style.crease));
         let coat = |c: &[f32; 4]| (decode([c[0], c[1], c[2]]), if c[3].is_nan() { 1.0 } else { c[3] });
-        let paint = Paint { material: coat(&style.material), of_triangle: par::map(&style.colors, coat) };
+        let paint = Paint {
+            material: coat(&style.material),
+            of_triangle: par::map(&style.colors, |c| c.as_ref().map(coat)),
+        };
         let studio = Studio::new(view.turn(Vec3::Z));
         Ok(Scene { view, indices: &mesh.triangles, placed, projected, creases, paint, studio })
     }
@@ -114,7 +117,7 @@ impl<'a> Scene<'a> {
         let covered = (opacity.clamp(0.0, 1.0) * 16.0).round() as u32;
         let corners = self.corners(triangle);
         let eye = if self.view.is_perspective() { corners[0] } else { Vec3::Z };
-        let turn = if facet_vector(&corners).dot(eye) > 0.0 { 8 } else { 0 };
+        let turn = if facet_vector(&corners).dot(eye) > 0.0 { 0 } else { 8 };
         (((1_u32 << covered) - 1) as u16).rotate_left(turn)
     }
 

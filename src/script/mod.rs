@@ -3,9 +3,73 @@
 //! The language is OpenSCAD's. Evaluating a script makes a [`Csg`] recipe and never a mesh; what it needs from outside
 //! (the texts of other files, meshes) it asks of a [`Host`], and what it has to say on the way (echo, warnings, errors)
 //! it hands to the host as a [`Message`].
+//!
+//! ```
+//! use ogee::script::{Host, Loaded, Message, Options, evaluate};
+//!
+//! struct Alone(Vec<String>);
+//!
+//! impl Host for Alone {
+//!     fn script(&mut self, name: &str, _from: &str) -> Result<Loaded, String> {
+//!         Err(format!("{name} cannot be read here"))
+//!     }
+//!     fn mesh(&mut self, name: &str, _from: &str) -> Result<std::sync::Arc<ogee::mesh::Mesh>, String> {
+//!         Err(format!("{name} cannot be read here"))
+//!     }
+//!     fn say(&mut self, message: Message) {
+//!         self.0.push(message.text);
+//!     }
+//! }
+//!
+//! let text = "module ring(n) for (i = [1:n]) rotate(360 * i / n) translate([9, 0]) cube(1); ring(5); echo(sin(30));";
+//! let mut host = Alone(Vec::new());
+//! let main = Loaded { name: "ring.scad".into(), text: text.into() };
+//! let evaluated = evaluate(main, &mut host, &Options::default()).expect("the script is right");
+//! assert!(evaluated.recipe.dimension().is_some());
+//! assert_eq!(host.0, ["0.5"]);
+//! ```
+//!
+//! The stages stand in files of their own: `lexer`, `source` (includes), `parser`, `ast`, `resolve` (names to
+//! slots), `eval`, and `builtins`, one table from which help is printed.
+//!
+//! # Where it differs from OpenSCAD
+//!
+//! The grammar is that of the development snapshots; where they and the release 2021.01 differ in meaning, the
+//! snapshots are followed (a range that counts down without a step is empty; a function value keeps the variables of
+//! its own round of a loop; in one scope a named function comes before a variable).
+//!
+//! - The same script always makes the same: `rands` without a seed starts from a fixed one.
+//! - A number too large, an open polyhedron, a missing file for `import` and a failed limit stop the script.
+//! - A polyhedron that is inside out is turned, with a warning.
+//! - What is not there yet ([`Builtin::is_missing`]) is an error that names it.
+//! - Variables of a used file are computed once, when they are first needed.
+//! - `$preview` is always false, and `version()` is that of the release whose language is complete here.
+//! - Ranges may have any number of values; [`Options::max_steps`] bounds them.
 
+mod ast;
+mod budget;
+mod builtins;
+mod degrees;
 mod diagnostic;
+mod eval;
+mod extent;
+mod facets;
+mod format;
+mod heap;
+mod lexer;
+mod names;
+mod operators;
+mod parser;
+mod report;
+mod resolve;
+mod source;
+mod stack;
+mod suggest;
+#[cfg(test)]
+mod tests;
+mod value;
 
+pub use builtins::{Builtin, BuiltinKind, builtins};
 pub use diagnostic::{FileId, Frame, Label, Message, Severity, Span};
 
 use crate::csg::Csg;
@@ -60,9 +124,9 @@ impl Default for Options {
         Options {
             define: Vec::new(),
             time: 0.0,
-            max_steps: 1_000_000_000,
+            max_steps: 200_000_000,
             max_depth: 20_000,
-            max_bytes: 4 << 30,
+            max_bytes: 2 << 30,
         }
     }
 }
@@ -85,4 +149,24 @@ pub enum Failure {
     Error,
     /// A limit of [`Options`] was reached.
     Limit,
+}
+
+/// Evaluates the script `main` and all that it includes and uses.
+///
+/// # Errors
+/// When the script is wrong or takes more than `options` allow; the host has been told why, and where.
+pub fn evaluate(main: Loaded, host: &mut dyn Host, options: &Options) -> Result<Evaluated, Failure> {
+    let source::Source { mut program, files, mut complaints } = source::load(main, &options.define, host);
+    let files = Arc::new(files);
+    let broken = complaints.iter().any(|complaint| complaint.severity == Severity::Error);
+    let suggestions =
+        if broken { Default::default() } else { resolve::resolve(&mut program, &mut complaints) };
+    let failed = complaints.iter().any(|complaint| complaint.severity == Severity::Error);
+    for complaint in complaints {
+        host.say(complaint.into_message(Vec::new(), files.clone()));
+    }
+    if failed {
+        return Err(Failure::Error);
+    }
+    eval::run(&program, &suggestions, files, host, options)
 }

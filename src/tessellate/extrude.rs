@@ -1,5 +1,5 @@
 use super::SweepError;
-use super::profile::{Profile, check_finite, most_triangles, push_quad};
+use super::profile::{Profile, check_finite, most_triangles};
 use crate::math::{Vec2, Vec3, degrees, sin_cos_degrees};
 use crate::mesh::{Mesh, Solid, TooLarge};
 use crate::polygon::Region;
@@ -45,21 +45,42 @@ impl LinearSweep {
 
     /// Map of the plane at `layer` of `layers`.
     fn section(&self, layer: u32, layers: u32) -> impl Fn(Vec2) -> Vec3 {
-        let part = f64::from(layer) / f64::from(layers);
-        let scale = if layer == layers { self.scale } else { Vec2::ONE.lerp(self.scale, part) };
+        let scale = self.scale_at(layer, layers);
         let (sin, cos) = sin_cos_degrees(-degrees(self.twist) * f64::from(layer) / f64::from(layers));
         let start = if self.center { -0.5 * self.vector } else { Vec3::ZERO };
+        let part = f64::from(layer) / f64::from(layers);
         let shift = if layer == layers { start + self.vector } else { start + part * self.vector };
-        move |point| {
-            let Vec2 { x, y } = point * scale;
-            Vec3::new(x * cos - y * sin, x * sin + y * cos, 0.0) + shift
+        move |Vec2 { x, y }| {
+            let turned = Vec2::new(x * cos - y * sin, x * sin + y * cos);
+            (turned * scale).extend(0.0) + shift
         }
+    }
+
+    fn scale_at(&self, layer: u32, layers: u32) -> Vec2 {
+        let part = f64::from(layer) / f64::from(layers);
+        if layer == layers { self.scale } else { Vec2::ONE.lerp(self.scale, part) }
+    }
+
+    /// How much longer, squared, the diagonal from `a` below to `b` above is than that from `b` to `a`.
+    ///
+    /// Where the scales are equal this is worked out on the unturned points, so that it is exactly zero for edges that
+    /// point away from the axis: rounding would else choose between their diagonals.
+    fn diagonals(&self, a: Vec2, b: Vec2, layer: u32, layers: u32) -> f64 {
+        let (below, above) = (self.scale_at(layer, layers).x, self.scale_at(layer + 1, layers).x);
+        if self.scale.x == self.scale.y {
+            let (sin, _) = sin_cos_degrees(-degrees(self.twist) / f64::from(layers));
+            let growth = (below * below - above * above) * (a.length_squared() - b.length_squared());
+            return growth + 4.0 * below * above * sin * a.perp_dot(b);
+        }
+        let (low, high) = (self.section(layer, layers), self.section(layer + 1, layers));
+        low(a).distance_squared(high(b)) - low(b).distance_squared(high(a))
     }
 }
 
 /// Sweeps a region of the plane z = 0 along a straight line; empty where the vector has no height.
 ///
-/// Each layer is scaled, then turned, then shifted; the quads between layers are split along their shorter diagonals.
+/// Each layer is turned, then scaled, then shifted. The quads between layers are split along their shorter diagonals; of
+/// equal ones, along that which keeps more volume where the border runs counter-clockwise about the axis.
 /// Without twist, scale and shear the sides are exactly vertical, whatever the number of layers. Where `scale` is zero on
 /// both axes each border of the region runs into a tip of its own; where it is zero on one axis the top is a ridge of
 /// triangles without area. Contours that the rounding of their vertices has made cross give ends that overlap
@@ -116,7 +137,12 @@ fn sides(profile: &Profile, sweep: &LinearSweep, last: u32, layers: u32) -> Mesh
     for layer in 0..last {
         let (below, above) = (layer * count, (layer + 1) * count);
         for &[a, b] in &profile.border {
-            push_quad(&mut mesh, [a + below, b + below, b + above, a + above]);
+            let longer =
+                sweep.diagonals(profile.points[a as usize], profile.points[b as usize], layer, layers);
+            let (c, d) = (b + above, a + above);
+            let (a, b) = (a + below, b + below);
+            let splits_ac = longer < 0.0 || longer == 0.0 && sweep.twist >= 0.0;
+            mesh.triangles.extend(if splits_ac { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
         }
     }
     mesh
@@ -187,6 +213,28 @@ mod tests {
             let (sin, cos) = sin_cos_degrees(-30.0);
             Vec3::new(4.0 * cos, 4.0 * sin, 3.0 / 9.0)
         });
+    }
+
+    /// Volumes that OpenSCAD 2021.01 finds, to the six digits it writes.
+    #[test]
+    fn quads_are_split_as_openscad_splits_them() {
+        let l = Region::assume(vec![contour(&[(0., 0.), (4., 0.), (4., 1.), (1., 1.), (1., 3.), (0., 3.)])]);
+        let at = |degrees: f64, slices, scale| {
+            let twist = degrees.to_radians();
+            let sweep = LinearSweep { vector: 10.0 * Vec3::Z, center: false, twist, slices, scale };
+            volume(linear_extrude(&l, &sweep).unwrap().mesh())
+        };
+        for (degrees, slices, scale, expected) in [
+            (90.0, 7, Vec2::ONE, 66.9159),
+            (-90.0, 7, Vec2::ONE, 66.9159),
+            (45.0, 7, Vec2::ONE, 63.6064),
+            (-30.0, 7, Vec2::ONE, 62.4350),
+            (200.0, 7, Vec2::ONE, 73.5062),
+            (60.0, 5, Vec2::new(0.5, 2.0), 64.0917),
+        ] {
+            let actual = at(degrees, slices, scale);
+            assert!((actual - expected).abs() < 1e-4, "{degrees}: {actual} is not {expected}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 use super::SweepError;
 use crate::math::{Vec2, Vec3};
-use crate::mesh::{Mesh, Topology};
+use crate::mesh::Topology;
 use crate::polygon::Region;
 use crate::polygon::triangulate::{self, TriangulationError};
 
@@ -76,13 +76,6 @@ pub(super) fn most_triangles(region: &Region, layers: u32) -> u64 {
     let vertices: usize = region.contours().iter().map(Vec::len).sum();
     let end = vertices + 2 * region.contours().len();
     2 * end as u64 + 2 * vertices as u64 * u64::from(layers)
-}
-
-/// Appends the two triangles of a quad given counter-clockwise, split along its shorter diagonal.
-pub(super) fn push_quad(mesh: &mut Mesh, [a, b, c, d]: [u32; 4]) {
-    let position = |v: u32| mesh.positions[v as usize];
-    let split_ac = position(a).distance_squared(position(c)) <= position(b).distance_squared(position(d));
-    mesh.triangles.extend(if split_ac { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
 }
 
 /// Refuses positions that grew out of the range of numbers.

@@ -1,5 +1,5 @@
 use super::SweepError;
-use super::profile::{Profile, check_finite, most_triangles, push_quad};
+use super::profile::{Profile, check_finite, most_triangles};
 use crate::math::{Vec2, Vec3, degrees, sin_cos_degrees};
 use crate::mesh::{Mesh, Solid, TooLarge};
 use crate::polygon::Region;
@@ -100,10 +100,8 @@ fn turned(profile: &Profile, sweep: &RotateSweep) -> Mesh {
                 (true, false) => mesh.triangles.push([first[a as usize], vertex(b, next), vertex(b, step)]),
                 (false, true) => mesh.triangles.push([vertex(a, step), vertex(a, next), first[b as usize]]),
                 (false, false) => {
-                    push_quad(
-                        &mut mesh,
-                        [vertex(a, step), vertex(a, next), vertex(b, next), vertex(b, step)],
-                    );
+                    let (a, b, c, d) = (vertex(a, step), vertex(a, next), vertex(b, next), vertex(b, step));
+                    mesh.triangles.extend([[a, b, c], [a, c, d]]);
                 }
             }
         }

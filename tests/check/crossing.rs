@@ -9,9 +9,10 @@ use robust::{Coord, Coord3D};
 /// that parts which touch in whole sides and corners are no offence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Crossings {
-    /// A side of one passes through the other, elsewhere than through its corners, or both lie on each other.
+    /// A side of one passes strictly through the inside of the other, or both lie on each other.
     pub(crate) crossing: usize,
-    /// They only touch: a corner of one within the other.
+    /// A corner of one is within the other, or sides meet. They may only touch, as a roof that stands on its ridge
+    /// does; the signs of two triangles alone do not tell.
     pub(crate) touching: usize,
     /// Triangles without area; they are left out of the rest.
     pub(crate) flat: usize,
@@ -69,12 +70,12 @@ fn lie_on_each_other(a: &Corners, b: &Corners, shared: &[Vec3]) -> bool {
     turn(u, v, p) == turn(u, v, q)
 }
 
-/// Whether a side of `a` passes from one side of `b` to the other, elsewhere than through its corners.
+/// Whether a side of `a` passes strictly through the inside of `b`.
 fn pierces(a: &Corners, b: &Corners) -> bool {
     let sides = a.map(|p| side(b, p));
     (0..3).any(|i| {
         let j = (i + 1) % 3;
-        sides[i] * sides[j] < 0 && passes(a[i], a[j], b).is_some_and(|sum| sum.abs() >= 2)
+        sides[i] * sides[j] < 0 && passes(a[i], a[j], b).is_some_and(|sum| sum.abs() == 3)
     })
 }
 

@@ -24,7 +24,8 @@ pub(crate) fn shrunk(case: &Case, attempts: usize, fails: &dyn Fn(&Case) -> bool
 
 /// Smaller cases, the boldest first.
 fn candidates(case: &Case) -> Vec<Case> {
-    let trees = smaller_trees(&case.tree).into_iter().map(|tree| without_idle_operands(tree, &case.operands));
+    let trees =
+        smaller_trees(&case.tree).into_iter().map(|tree| without_idle_operands(&tree, &case.operands));
     let mut all: Vec<Case> = trees.collect();
     for (index, mesh) in case.operands.iter().enumerate() {
         let smaller = components(mesh).into_iter().chain(collapses(mesh)).chain(nearer(mesh));
@@ -56,9 +57,9 @@ fn smaller_trees(tree: &Tree) -> Vec<Tree> {
     all
 }
 
-fn without_idle_operands(tree: Tree, operands: &[Mesh]) -> Case {
+fn without_idle_operands(tree: &Tree, operands: &[Mesh]) -> Case {
     let mut used = Vec::new();
-    let tree = renumbered(&tree, &mut used);
+    let tree = renumbered(tree, &mut used);
     Case { tree, operands: used.into_iter().map(|index| operands[index].clone()).collect() }
 }
 

@@ -20,7 +20,7 @@ pub(crate) struct Lattice {
 impl Lattice {
     /// For these finite positions.
     pub(crate) fn holding<'a>(positions: impl IntoIterator<Item = &'a Vec3>) -> Lattice {
-        let coordinates = positions.into_iter().flat_map(|p| p.to_array());
+        let coordinates = positions.into_iter().flat_map(Vec3::to_array);
         let exponents = coordinates.filter(|&x| x != 0.0).map(|x| mantissa_and_exponent(x).1);
         Lattice { exponent: exponents.min().unwrap_or(0) }
     }

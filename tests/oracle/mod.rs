@@ -35,8 +35,8 @@ pub(crate) struct Truth {
     pub(crate) components: Vec<Component>,
     /// The points of the arrangement on the surface, with whether they are corners of it.
     pub(crate) points: Vec<([RBig; 3], bool)>,
-    /// The edges along which wedges touch. Results may need vertices on them, to tell their sides apart.
-    pub(crate) contacts: Vec<[Vec3; 2]>,
+    /// The sides of cells at which the surface bends or wedges touch.
+    pub(crate) edges: Vec<[Vec3; 2]>,
 }
 
 /// A connected piece of a surface. A cavity is one, with negative volume.
@@ -123,12 +123,13 @@ fn measure(lattice: Lattice, scene: &Scene, surface: &Surface) -> Truth {
         sewn.euler.iter().zip(volumes).map(|(&euler, volume)| Component { euler, volume }).collect();
     let points = points(lattice, surface);
     let positions: Vec<Vec3> = points.iter().map(rounded).collect();
-    let shared = sewn.seams.iter().filter(|seam| seam.shared);
+    let plane = |side: surface::Side| surface.faces[side.face].plane;
+    let edges = sewn.seams.iter().filter(|seam| seam.shared || plane(seam.forward) != plane(seam.backward));
     Truth {
         volume: sum(components.iter().map(|c| c.volume.clone()).collect()),
         area: surface.faces.iter().map(|face| area(&positions, face)).sum(),
         components,
-        contacts: shared.map(|seam| surface.joined(seam.forward).map(|p| positions[p])).collect(),
+        edges: edges.map(|seam| surface.joined(seam.forward).map(|p| positions[p])).collect(),
         points: points.into_iter().zip(sewn.is_corner).collect(),
     }
 }

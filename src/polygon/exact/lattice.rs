@@ -21,8 +21,10 @@ impl Lattice {
         Lattice { exponent: (exponent_above(largest) - BITS).max(f64::MIN_EXP - 53) }
     }
 
-    /// The same lattice, or the one of multiples of 2^`exponent` where that is coarser.
-    pub fn no_finer_than(self, exponent: i32) -> Lattice {
+    /// The same lattice, or where that is coarser the one of the largest power of two that is at most `resolution`.
+    pub fn as_coarse_as(self, resolution: f64) -> Lattice {
+        let coarser = resolution > 0.0 && resolution.is_finite();
+        let exponent = if coarser { exponent_above(resolution) - 1 } else { self.exponent };
         Lattice { exponent: self.exponent.max(exponent) }
     }
 
@@ -46,6 +48,16 @@ fn exponent_above(value: f64) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_resolution_only_makes_coarser() {
+        let fine = Lattice::fitting(1.0);
+        assert_eq!(fine.as_coarse_as(0.0), fine);
+        assert_eq!(fine.as_coarse_as(f64::NAN), fine);
+        assert_eq!(fine.as_coarse_as(1e-30), fine);
+        assert_eq!(fine.as_coarse_as(0.3).to_model(Vec3::ONE), Vec3::splat(0.25));
+        assert_eq!(fine.as_coarse_as(0.25).to_model(Vec3::ONE), Vec3::splat(0.25));
+    }
 
     #[test]
     fn coordinates_near_the_largest_are_kept() {

@@ -24,6 +24,7 @@ mod lattice;
 mod overlay;
 mod plane;
 mod points;
+mod snapped;
 mod sweep;
 mod triangulate;
 
@@ -33,6 +34,7 @@ pub use lattice::Lattice;
 pub use overlay::{Jump, Overlay, Segment, SubEdge, overlay};
 pub use plane::Plane;
 pub use points::{PointId, Points};
+pub use snapped::Snapped;
 pub use sweep::{Planar, PlanarEdge};
 pub use triangulate::{Boundary, triangulate};
 

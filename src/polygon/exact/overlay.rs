@@ -197,7 +197,7 @@ fn strictly_between(chart: &Chart, points: &Points, point: PointId, segment: &Se
 
 /// Makes pieces with the same ends one edge with the jumps of all.
 fn unite(mut pieces: Vec<Piece>) -> (Vec<SubEdge>, Vec<Jump>) {
-    pieces.sort_by(|a, b| (a.ends, a.jump, a.line).cmp(&(b.ends, b.jump, b.line)));
+    pieces.sort_by_key(|piece| (piece.ends, piece.jump, piece.line));
     let (mut edges, mut jumps) = (Vec::with_capacity(pieces.len()), Vec::new());
     for group in pieces.chunk_by(|a, b| a.ends == b.ends) {
         let start = jumps.len() as u32;

@@ -1,0 +1,68 @@
+//! What the processes hand to each other.
+
+use crate::cases::Case;
+use ogee::boolean::Tree;
+use ogee::math::Vec3;
+use ogee::mesh::Mesh;
+use serde_json::{Value, json};
+use std::fs;
+use std::io::{self, BufWriter, Read, Write};
+use std::path::Path;
+
+/// Meshes as counts, positions and triangles, little-endian.
+pub(crate) fn write_meshes(path: &Path, meshes: &[Mesh]) -> io::Result<()> {
+    let mut file = BufWriter::new(fs::File::create(path)?);
+    file.write_all(&(meshes.len() as u64).to_le_bytes())?;
+    for mesh in meshes {
+        file.write_all(&(mesh.positions.len() as u64).to_le_bytes())?;
+        file.write_all(&(mesh.triangles.len() as u64).to_le_bytes())?;
+        for x in mesh.positions.iter().flat_map(Vec3::to_array) {
+            file.write_all(&x.to_le_bytes())?;
+        }
+        for v in mesh.triangles.iter().flatten() {
+            file.write_all(&v.to_le_bytes())?;
+        }
+    }
+    file.flush()
+}
+
+/// What [`write_meshes`] or `peer.py` wrote.
+pub(crate) fn read_meshes(path: &Path) -> io::Result<Vec<Mesh>> {
+    let mut file = io::BufReader::new(fs::File::open(path)?);
+    let mut word = [0; 8];
+    let mut count = |file: &mut dyn Read| -> io::Result<usize> {
+        file.read_exact(&mut word)?;
+        Ok(u64::from_le_bytes(word) as usize)
+    };
+    let meshes = count(&mut file)?;
+    let mut all = Vec::new();
+    for _ in 0..meshes {
+        let (vertices, triangles) = (count(&mut file)?, count(&mut file)?);
+        let mut bytes = vec![0; 24 * vertices];
+        file.read_exact(&mut bytes)?;
+        let numbers: Vec<f64> = bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+        let mut bytes = vec![0; 12 * triangles];
+        file.read_exact(&mut bytes)?;
+        let indices: Vec<u32> = bytes.as_chunks().0.iter().map(|b| u32::from_le_bytes(*b)).collect();
+        let positions = numbers.as_chunks().0.iter().map(|p| Vec3::from_array(*p)).collect();
+        all.push(Mesh::new(positions, indices.as_chunks().0.to_vec()));
+    }
+    Ok(all)
+}
+
+/// Writes the case into its folder; the tree as lists, an operand's number or an operation and its operands.
+pub(crate) fn write_case(folder: &Path, case: &Case, tree: &Tree) -> io::Result<()> {
+    let value = json!({ "imported": case.imported, "tree": tree_value(tree) });
+    fs::write(folder.join("case.json"), value.to_string())
+}
+
+fn tree_value(tree: &Tree) -> Value {
+    match tree {
+        Tree::Leaf(index) => json!(index),
+        Tree::Node(op, children) => {
+            let mut list = vec![json!(format!("{op:?}"))];
+            list.extend(children.iter().map(tree_value));
+            Value::Array(list)
+        }
+    }
+}

@@ -1,0 +1,124 @@
+use super::input::{Kind, Source};
+use super::model::{self, Times};
+use super::output::{self, Output};
+use super::settings::{ScriptArgs, format};
+use super::stop::Stop;
+use super::summary::{Form, Summary};
+use super::terminal::Terminal;
+use crate::csg::Shape;
+use crate::io::Format;
+use crate::mesh::{Measures, Solid};
+use clap::ValueHint;
+use std::io::Write;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  ogee build bracket.scad -o bracket.obj
+  ogee build bracket.scad -o bracket.stl -o bracket.ply -D width=40 -D 'label=\"A\"'
+  ogee build bracket.scad --summary json
+  ogee build - -o - --format off < bracket.scad > bracket.off";
+
+/// Make a mesh from a script
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// The script; `-` reads it from standard input
+    #[arg(value_name = "IN.scad", value_hint = ValueHint::FilePath)]
+    input: PathBuf,
+    /// Where to write the mesh, in the format of the ending; may be repeated; `-` is standard output
+    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath, required_unless_present = "summary")]
+    output: Vec<PathBuf>,
+    /// Write this format, whatever the ending
+    #[arg(long, value_parser = format())]
+    format: Option<Format>,
+    /// Print measures and times to standard output
+    #[arg(long, value_enum, value_name = "FORM")]
+    summary: Option<Form>,
+    /// Exit with 4 when a mesh that takes part, or the result, is not closed
+    #[arg(long)]
+    strict: bool,
+    #[command(flatten)]
+    script: ScriptArgs,
+}
+
+/// What is meant by the arguments.
+struct Job {
+    source: Source,
+    outputs: Vec<Output>,
+    summary: Option<Form>,
+    strict: bool,
+}
+
+impl Job {
+    fn new(args: &Args) -> Result<Job, Stop> {
+        let source = Source::typed(&args.input);
+        if let Ok(Kind::Mesh(_)) = source.kind() {
+            let hint = "this is a mesh, not a script; see `ogee info` and `ogee boolean`";
+            return Err(Stop::about(source, hint));
+        }
+        let outputs = output::plan(&args.output, args.format)?;
+        if args.summary.is_some() && outputs.iter().any(|output| output.name().is_none()) {
+            return Err(Stop::Usage("-o - and --summary both want standard output".to_owned()));
+        }
+        Ok(Job { source, outputs, summary: args.summary, strict: args.strict })
+    }
+}
+
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
+    let job = Job::new(args)?;
+    let mut times = Times::default();
+    let mut summary = Summary::default();
+    summary.row("input", job.source.to_string());
+    let built = model::build(&job.source, &args.script, job.strict, &mut times, terminal)?;
+    match built.shape {
+        Shape::Solid(solid) => write_solid(&job, &solid, &mut times, &mut summary, terminal)?,
+        Shape::Region(region) if job.outputs.is_empty() => drop(summary.region(&region)),
+        Shape::Region(_) => {
+            let reason = "the script makes a plane region, which mesh files cannot hold; linear_extrude makes it a solid";
+            return Err(Stop::about(job.source, reason));
+        }
+    }
+    let [warnings, echoes] = terminal.counts();
+    summary.row("warnings", warnings).row("echoes", echoes);
+    summary.report(&built.report).row("seconds", times.rows());
+    match job.summary {
+        Some(form) => print(&summary.print(form)),
+        None => Ok(()),
+    }
+}
+
+fn write_solid(
+    job: &Job,
+    solid: &Solid,
+    times: &mut Times,
+    summary: &mut Summary,
+    terminal: &Terminal,
+) -> Result<(), Stop> {
+    let measures = times.stage(terminal, "measure", "measuring", || solid.measures());
+    if job.strict && !measures.closed {
+        return Err(Stop::NotClosed(format!("{}: the result is not closed", job.source)));
+    }
+    if solid.is_empty() {
+        terminal.warn(format!("{}: the result is empty", job.source));
+    }
+    times.stage(terminal, "write", "writing", || output::write(&job.outputs, solid.mesh()))?;
+    for name in job.outputs.iter().filter_map(Output::name) {
+        terminal.note(format_args!("{name}: {}", in_short(&measures, times)));
+    }
+    summary.measures(&measures);
+    Ok(())
+}
+
+fn in_short(measures: &Measures, times: &Times) -> String {
+    let Measures { triangles, components, .. } = measures;
+    let closed = if measures.closed { "closed" } else { "NOT closed" };
+    let plural = if *components == 1 { "" } else { "s" };
+    format!("{triangles} triangles, {components} component{plural}, {closed}, {:.2} s", times.total())
+}
+
+/// Prints a result to standard output.
+pub(super) fn print(text: &str) -> Result<(), Stop> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| Stop::of_stdout(error.into()))
+}

@@ -1,0 +1,134 @@
+//! What booleans promise beyond the right shape: errors, births, labels, the same bits in any order.
+
+use ogee::boolean::{self, BooleanError, Combined, Op, Operand, Tree, evaluate, evaluate_on_grid};
+use ogee::math::{Quat, Vec3};
+use ogee::mesh::{Mesh, Solid, cuboid, sphere};
+
+fn cube(corner: Vec3, size: f64) -> Solid {
+    cuboid(corner, corner + Vec3::splat(size))
+}
+
+fn moved(solid: &Solid, turn: Quat, by: Vec3) -> Mesh {
+    let mut mesh = solid.mesh().clone();
+    mesh.positions.iter_mut().for_each(|p| *p = turn * *p + by);
+    mesh
+}
+
+/// Triangles by their corner positions, each from its least corner, sorted.
+fn canonical(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
+    let corner = |p: Vec3| (p + 0.0).to_array().map(f64::to_bits);
+    let mut all: Vec<[[u64; 3]; 3]> = (0..mesh.triangles.len())
+        .map(|t| {
+            let mut corners = mesh.corners(t).map(corner);
+            let least = (0..3).min_by_key(|&i| corners[i]).unwrap_or_default();
+            corners.rotate_left(least);
+            corners
+        })
+        .collect();
+    all.sort_unstable();
+    all
+}
+
+/// Distance of a point from the plane of a triangle.
+fn off_plane(mesh: &Mesh, triangle: u32, p: Vec3) -> f64 {
+    let [a, b, c] = mesh.corners(triangle as usize);
+    (p - a).dot((b - a).cross(c - a).normalize()).abs()
+}
+
+fn some_pair() -> [Mesh; 2] {
+    let ball = sphere(1.0, 24).expect("a sphere");
+    let turn = Quat::from_axis_angle(Vec3::new(1.0, 2.0, -1.0).normalize(), 0.4);
+    [ball.into_mesh(), moved(&cube(Vec3::splat(-0.7), 1.4), turn, Vec3::new(0.5, 0.1, 0.2))]
+}
+
+#[test]
+fn the_order_of_operands_changes_no_bit() {
+    let [a, b] = some_pair();
+    for op in [Op::Union, Op::Intersection, Op::SymmetricDifference] {
+        let tree = Tree::flat(op, 2);
+        let (ab, ba) = (evaluate(&tree, &[&a, &b]).unwrap(), evaluate(&tree, &[&b, &a]).unwrap());
+        assert_eq!(canonical(ab.solid.mesh()), canonical(ba.solid.mesh()), "{op:?}");
+    }
+}
+
+#[test]
+fn every_triangle_lies_on_the_one_it_came_from() {
+    let [a, b] = some_pair();
+    for op in [Op::Union, Op::Intersection, Op::Difference, Op::SymmetricDifference] {
+        let Combined { solid, birth } = evaluate(&Tree::flat(op, 2), &[&a, &b]).unwrap();
+        assert_eq!(solid.triangles().len(), birth.len());
+        for (t, birth) in birth.iter().enumerate() {
+            let source = [&a, &b][birth.operand as usize];
+            for p in solid.mesh().corners(t) {
+                assert!(off_plane(source, birth.triangle, p) < 1e-15 * 8.0, "{op:?} {t}");
+            }
+        }
+    }
+}
+
+#[test]
+fn vertices_away_from_the_cut_keep_their_bits() {
+    let [a, b] = some_pair();
+    let solid = evaluate(&Tree::flat(Op::Difference, 2), &[&a, &b]).unwrap().solid;
+    let kept = a.positions.iter().filter(|p| solid.positions().contains(p)).count();
+    assert!(kept > a.positions.len() / 2);
+}
+
+#[test]
+fn labels_keep_coplanar_faces_apart() {
+    let (a, b) = (cube(Vec3::ZERO, 1.0), cube(Vec3::X, 1.0));
+    let tree = Tree::flat(Op::Union, 2);
+    let plain = evaluate(&tree, &[&a, &b]).unwrap();
+    assert_eq!(plain.solid.triangles().len(), 12);
+    let labelled = [Operand::from(&a), Operand::from(&b).with_material(1)];
+    let Combined { solid, birth } = evaluate(&tree, &labelled).unwrap();
+    assert_eq!((solid.triangles().len(), solid.positions().len()), (20, 12));
+    for (t, birth) in birth.iter().enumerate() {
+        let middle = solid.mesh().corners(t).iter().sum::<Vec3>() / 3.0;
+        assert_eq!(birth.operand, u32::from(middle.x > 1.0));
+    }
+}
+
+#[test]
+fn empty_and_missing_operands_are_ordinary() {
+    let (a, nothing) = (cube(Vec3::ZERO, 1.0), Solid::default());
+    assert_eq!(boolean::union(&a, &nothing).solid.triangles().len(), 12);
+    assert!(boolean::intersection(&a, &nothing).solid.is_empty());
+    assert!(boolean::difference(&nothing, &a).solid.is_empty());
+    assert!(evaluate::<&Solid>(&Tree::flat(Op::Union, 0), &[]).unwrap().solid.is_empty());
+    assert!(evaluate::<&Solid>(&Tree::flat(Op::Intersection, 0), &[]).unwrap().solid.is_empty());
+}
+
+#[test]
+fn what_bounds_no_volume_is_refused() {
+    let mut open = cube(Vec3::ZERO, 1.0).into_mesh();
+    open.triangles.pop();
+    let error = evaluate(&Tree::Leaf(0), &[&open]).unwrap_err();
+    assert_eq!(error.to_string(), "operand 0 bounds no volume: 3 open edges, 3 unbalanced edges");
+    let mut far = cube(Vec3::ZERO, 1.0).into_mesh();
+    far.positions[2].y = f64::NAN;
+    assert!(matches!(evaluate(&Tree::Leaf(0), &[&far]), Err(BooleanError::NotClosed { operand: 0, .. })));
+    far.triangles[3][1] = 99;
+    assert!(evaluate(&Tree::Leaf(0), &[&far]).is_err());
+    let error = evaluate(&Tree::Leaf(1), &[&cube(Vec3::ZERO, 1.0)]).unwrap_err();
+    assert_eq!(error.to_string(), "the expression names operand 1 of 1");
+}
+
+#[test]
+fn extreme_sizes_are_taken() {
+    for scale in [1e-300, 1e-9, 1e9, 1e300] {
+        let (a, b) = (cube(Vec3::ZERO, scale), cube(Vec3::splat(0.5 * scale), scale));
+        let solid = boolean::difference(&a, &b).solid;
+        assert_eq!((solid.positions().len(), solid.triangles().len()), (14, 24), "{scale:e}");
+        assert!(solid.positions().contains(&Vec3::splat(0.5 * scale)));
+    }
+}
+
+#[test]
+fn a_grid_joins_what_misses_by_less() {
+    let (a, b) = (cube(Vec3::ZERO, 1.0), cube(Vec3::new(1.0 + 1e-13, 0.0, 1e-13), 1.0));
+    let parts = [&a, &b];
+    let tree = Tree::flat(Op::Union, 2);
+    assert_eq!(evaluate(&tree, &parts).unwrap().solid.triangles().len(), 24);
+    assert_eq!(evaluate_on_grid(&tree, &parts, 1e-10).unwrap().solid.triangles().len(), 12);
+}
