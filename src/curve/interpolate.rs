@@ -286,7 +286,7 @@ fn spaced<P: Blend>(points: &[P], spacing: Spacing) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Continuity;
+    use crate::curve::{Continuity, Joint};
     use crate::math::Vec2;
     use proptest::prelude::*;
 
@@ -300,6 +300,15 @@ mod tests {
                 })
                 .unzip()
         })
+    }
+
+    /// Whether derivatives agree to rounding: points are up to 9 and steps down to 0.1, so that second differences of
+    /// rounded points, over a squared step, err by about 1e-12.
+    fn agrees(joint: &Joint<Vec2>, kind: Continuity) -> bool {
+        let [a, b] = joint.first;
+        let [c, d] = joint.second;
+        (a - b).length() < 1e-11 * (1.0 + a.length())
+            && (kind == Continuity::C1 || (c - d).length() < 1e-10 * (1.0 + c.length()))
     }
 
     proptest! {
@@ -320,14 +329,14 @@ mod tests {
                     prop_assert_eq!(spline.eval(t), p);
                 }
                 for joint in (1..n - 1).map(|i| spline.joint(i).unwrap()) {
-                    prop_assert!(joint.misfit(kind) < 1e-11, "{:?}", joint);
+                    prop_assert!(agrees(&joint, kind), "{joint:?}");
                 }
             }
             if n > 2 {
                 let ring = Spline::periodic(&points[..n - 1], &knots).unwrap();
                 for (index, &point) in points[..n - 1].iter().enumerate() {
                     prop_assert_eq!(ring.piece(index).to_array()[0], point);
-                    prop_assert!(ring.joint(index).unwrap().misfit(Continuity::C2) < 1e-11);
+                    prop_assert!(agrees(&ring.joint(index).unwrap(), Continuity::C2));
                 }
             }
         }
