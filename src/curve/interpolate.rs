@@ -349,8 +349,12 @@ mod tests {
                 for (index, piece) in spline.pieces().enumerate() {
                     prop_assert_eq!(piece.to_array()[0], points[index]);
                 }
+                let steps = spline.knots().windows(2).map(|pair| pair[1] - pair[0]);
+                let shortest = steps.fold(f64::INFINITY, f64::min);
                 for joint in (0..points.len()).filter_map(|i| spline.joint(i)) {
-                    prop_assert!(joint.misfit(Continuity::C1) < 1e-12);
+                    // Points up to 9 are rounded, over steps that may be short.
+                    let [a, b] = joint.first;
+                    prop_assert!((a - b).length() < 1e-13 * (1.0 / shortest + a.length()), "{joint:?}");
                 }
             }
         }
