@@ -1,4 +1,5 @@
-//! Numbers that can be trusted: exact signs, wide integers, stable hashes, seeded random numbers.
+//! Numbers that can be trusted: exact signs, wide integers, compensated sums and double-doubles, roots, quadrature, small
+//! solves, stable hashes.
 
 pub mod compensated;
 mod disjoint_sets;
