@@ -1,4 +1,4 @@
-//! Bézier curves and splines: evaluated, measured, found.
+//! Bézier curves, splines and paths: evaluated, measured, found.
 //!
 //! A curve is made of finite control points and is checked once, where it is made; after that door nothing is NaN.
 //! [`Bezier`] has a fixed number of control points, [`AnyBezier`] any number; both have the methods of [`Bernstein`]
@@ -20,6 +20,7 @@
 //! # Ok::<(), ogee::curve::CurveError>(())
 //! ```
 
+mod arc;
 mod b_spline;
 mod batch;
 mod bernstein;
@@ -35,11 +36,13 @@ mod interpolate;
 mod intersect;
 mod length;
 mod nearest;
+mod path;
 mod rational;
 mod reduce;
 mod spline;
 mod subdivide;
 
+pub use arc::Arc;
 pub use bernstein::BernsteinRoot;
 pub use bezier::{AnyBezier, Bernstein, Bezier, Cubic, Line, Quadratic};
 pub use bounded::Bounded;
@@ -52,6 +55,7 @@ pub use interpolate::{Boundary, Spacing};
 pub use intersect::{Contact, Meeting, intersect, intersect_line, self_intersections};
 pub use length::{ArcLength, length, speed_minima};
 pub use nearest::{Nearest, nearest, nearest_all};
+pub use path::{Path, Piece, Subpath};
 pub use rational::Rational;
 pub use reduce::{Reduced, reduce};
 pub use spline::{Continuity, Joint, Spline};
