@@ -13,10 +13,13 @@ const HOMES: &[(&str, &[&str])] = &[
     ("png", &["io/png.rs"]),
     ("rayon", &["par.rs"]),
     ("robust", &["numeric/predicates.rs"]),
+    ("roxmltree", &["io/svg"]),
     ("serde_json", &["io", "cli"]),
     ("siphasher", &["numeric/hash.rs"]),
     ("spade", &["polygon/triangulate.rs"]),
     ("stacker", &["script/stack.rs"]),
+    ("svg", &["io/svg", "plot"]),
+    ("tiny_skia", &["plot"]),
 ];
 
 /// Modules in the order `lib.rs` declares them, each with the layer comment it stands under.

@@ -135,8 +135,16 @@ impl Arc {
         }
     }
 
+    /// Both halves of the arc; they share the point between them.
+    pub fn halves(&self) -> (Arc, Arc) {
+        let (half, middle) = (0.5 * self.sweep, self.eval(0.5));
+        let [start, end] = self.ends;
+        let first = Arc { sweep: half, ends: [start, middle], ..*self };
+        (first, Arc { angle: self.angle + half, sweep: half, ends: [middle, end], ..*self })
+    }
+
     fn at(&self, angle: f64) -> Vec2 {
-        let (sine, cosine) = sin_cos(angle);
+        let (sine, cosine) = quarter_exact(angle);
         self.center + (self.axes[0] * cosine + self.axes[1] * sine)
     }
 
@@ -281,6 +289,15 @@ impl Arc {
         let cross = DoubleDouble::product(u.x, v.y) - DoubleDouble::product(u.y, v.x);
         cross * beyond_sine(self.sweep)
     }
+}
+
+/// Sine and cosine, exact at the multiples of a quarter turn that `f64` comes nearest to.
+fn quarter_exact(angle: f64) -> (f64, f64) {
+    let quarters = angle / FRAC_PI_2;
+    if quarters != quarters.round() || quarters.abs() > 8.0 {
+        return sin_cos(angle);
+    }
+    [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][quarters.rem_euclid(4.0) as usize]
 }
 
 /// `x - sin x`; exactly `x` at half and full turns.
