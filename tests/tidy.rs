@@ -7,6 +7,8 @@ use std::path::Path;
 const HOMES: &[(&str, &[&str])] = &[
     ("annotate_snippets", &["cli"]),
     ("clap", &["cli"]),
+    ("csv", &["io/csv.rs"]),
+    ("dejavu", &["plot/text.rs"]),
     ("glam", &["math"]),
     ("indicatif", &["cli"]),
     ("libm", &["math"]),
@@ -19,7 +21,8 @@ const HOMES: &[(&str, &[&str])] = &[
     ("spade", &["polygon/triangulate.rs"]),
     ("stacker", &["script/stack.rs"]),
     ("svg", &["io/svg", "plot"]),
-    ("tiny_skia", &["plot"]),
+    ("tiny_skia", &["plot/raster.rs"]),
+    ("ttf_parser", &["plot"]),
 ];
 
 /// Modules in the order `lib.rs` declares them, each with the layer comment it stands under.

@@ -128,10 +128,12 @@ impl Piece {
     /// As [`length`].
     pub fn length(&self, accuracy: f64) -> Result<Bounded<f64>, CurveError> {
         check_tolerance(accuracy)?;
-        match self {
-            Piece::Line(curve) => length(curve, accuracy),
-            Piece::Quadratic(curve) => length(curve, accuracy),
-            Piece::Cubic(curve) => length(curve, accuracy),
+        // Seen from its start: differences are exact to their own last digit, whatever the origin.
+        let near = Affine2::from_translation(-self.start());
+        match self.map(&near).unwrap_or(*self) {
+            Piece::Line(curve) => length(&curve, accuracy),
+            Piece::Quadratic(curve) => length(&curve, accuracy),
+            Piece::Cubic(curve) => length(&curve, accuracy),
             Piece::Arc(arc) => arc.length(),
         }
     }

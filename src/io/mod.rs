@@ -10,12 +10,14 @@
 //!
 //! | SVG | paths and basic shapes; see [`svg`] | path data, same bits |
 //!
-//! Pictures are written as PNG.
+//! Tables of numbers are read from CSV and lists of points from JSON; pictures are written as PNG.
 //!
 //! Polygons become triangles in their own plane, also where they are not convex.
 
+pub mod csv;
 mod error;
 mod facets;
+pub mod json;
 pub mod obj;
 pub mod off;
 pub mod ply;
