@@ -201,20 +201,23 @@ impl Arc {
         Ok(Bounded { value, error: (16.0 * f64::EPSILON * value).next_up() })
     }
 
-    /// The smallest box around the arc, rounded outward.
+    /// The smallest box around the arc: sides that touch it at the ends of half-axes along x and y, or at its own
+    /// ends, are right to the last digit, others are rounded outward.
     pub fn bounding_box(&self) -> Bounds<Vec2> {
         let [start, end] = self.ends;
         let (mut min, mut max) = (start.min(end), start.max(end));
         let [u, v] = self.axes;
         for axis in 0..2 {
             let reach = hypot(u[axis], v[axis]);
-            let rounding = 2.0 * f64::EPSILON * reach;
             let highest = atan2(v[axis], u[axis]);
+            // Along the axes of the ellipse the sides are one sum away, like its points there.
+            let exact = u[axis] == 0.0 || v[axis] == 0.0;
+            let rounding = if exact { 0.0 } else { 2.0 * f64::EPSILON * (reach + self.center[axis].abs()) };
             if self.passes(highest) {
-                max[axis] = max[axis].max((self.center[axis] + reach + rounding).next_up());
+                max[axis] = max[axis].max(self.center[axis] + reach + rounding);
             }
             if self.passes(highest + PI) {
-                min[axis] = min[axis].min((self.center[axis] - reach - rounding).next_down());
+                min[axis] = min[axis].min(self.center[axis] - reach - rounding);
             }
         }
         Bounds { min, max }

@@ -7,7 +7,6 @@ use super::ticks::{Tick, ticks};
 use super::{Color, text};
 use crate::curve::{Arc, Cubic, Line, Path, Piece, Subpath};
 use crate::math::{Affine2, Mat2, Vec2, log10};
-use crate::tessellate::flatten;
 
 /// The share of the data's range that is left free on each side.
 const AIR: f64 = 0.04;
@@ -242,30 +241,16 @@ impl Frame<'_> {
         })
     }
 
-    /// Points along a piece, in pixels, close enough that lines between them show the curve on any scale.
+    /// Points along a piece, in pixels, close enough that lines between them show the curve on any scale. A line is
+    /// drawn straight on every scale.
     fn points(&self, piece: &Piece) -> Vec<Vec2> {
-        if let (Piece::Line(line), true) = (piece, self.is_linear()) {
-            return line.to_array().map(|p| self.pixel(p)).to_vec();
+        let ends = [piece.start(), piece.end()].map(|p| self.pixel(p));
+        if matches!(piece, Piece::Line(_)) {
+            return ends.to_vec();
         }
-        let pixels = self.pieces_for_flattening(piece);
-        let flat = pixels.iter().flat_map(|cubic| match flatten(cubic, TOLERANCE) {
-            Ok(flat) => flat.points,
-            Err(_) => cubic.to_array().to_vec(),
-        });
-        flat.collect()
-    }
-
-    /// Cubics in pixels through points of the piece: on logarithmic axes an even sample with its derivatives would
-    /// not be exact, so lines between many points stand for them.
-    fn pieces_for_flattening(&self, piece: &Piece) -> Vec<Cubic<Vec2>> {
-        if self.is_linear() {
-            let cubics = self.pieces(piece);
-            return cubics.iter().filter_map(|piece| piece.cubics(TOLERANCE).ok()).flatten().collect();
-        }
-        let mut points = vec![self.pixel(piece.start())];
-        self.halve(piece, [0.0, 1.0], [points[0], self.pixel(piece.end())], 0, &mut points);
-        let line = |pair: &[Vec2]| Line::new([pair[0], pair[1]]).map(|line| line.elevated()).ok();
-        points.windows(2).filter_map(line).collect()
+        let mut points = vec![ends[0]];
+        self.halve(piece, [0.0, 1.0], ends, 0, &mut points);
+        points
     }
 
     /// Adds points of a piece until each is a short step from the last and halves stay on their chords.
@@ -396,8 +381,7 @@ fn draw(layer: &Layer, frame: &Frame<'_>, measures: Measures, items: &mut Vec<It
     match &layer.content {
         Content::Curve(path) => items.push(Item::Line { path: frame.path(path), width, color, dash }),
         Content::Area(path) => {
-            let [r, g, b, _] = color;
-            items.push(Item::Fill { path: frame.path(path), color: [r, g, b, FAINT] });
+            items.push(Item::Fill { path: frame.path(path), color: faint(color) });
         }
         Content::Marks(mark, points) => {
             let centers: Vec<Vec2> = points.iter().map(|&p| frame.pixel(p)).collect();
@@ -484,6 +468,11 @@ pub(super) fn marks(
     }
 }
 
+/// The colour of areas.
+pub(super) fn faint([r, g, b, _]: Color) -> Color {
+    [r, g, b, FAINT]
+}
+
 /// A clear background hides nothing; white stands for it.
 fn opaque(color: Color) -> Color {
     if color[3] == 0 { [255; 4] } else { color }
@@ -516,4 +505,184 @@ fn drawn_places(figure: &Figure, frame: &Frame<'_>, measures: Measures) -> Vec<V
         }
     }
     places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::svg::read_path;
+    use crate::math::{cos, exp, pow, sin};
+    use crate::plot::Ink;
+    use proptest::prelude::*;
+
+    /// The rectangles that texts take, with their texts.
+    fn boxes(scene: &Scene) -> Vec<(Area, String)> {
+        let texts =
+            scene.items.iter().filter_map(|item| if let Item::Text(text) = item { Some(text) } else { None });
+        let area = |text: &Text| {
+            let width = text::width(&text.content, text.size);
+            let start = match text.anchor {
+                Anchor::Start => 0.0,
+                Anchor::Middle => -0.5 * width,
+                Anchor::End => -width,
+            };
+            let (low, high) =
+                (Vec2::new(start, -0.73 * text.size), Vec2::new(start + width, 0.05 * text.size));
+            let turned = |v: Vec2| if text.upward { Vec2::new(v.y, -v.x) } else { v };
+            let (a, b) = (text.at + turned(low), text.at + turned(high));
+            (Area { min: a.min(b), max: a.max(b) }, text.content.clone())
+        };
+        texts.map(area).collect()
+    }
+
+    /// Texts are in the picture and do not touch each other.
+    fn check_texts(figure: &Figure, width: u32, height: u32) {
+        let scene = figure.scene(width, height).unwrap();
+        let boxes = boxes(&scene);
+        let far = Vec2::new(f64::from(width), f64::from(height));
+        for (k, (area, text)) in boxes.iter().enumerate() {
+            let inside = area.min.cmpge(Vec2::ZERO).all() && area.max.cmple(far).all();
+            assert!(inside, "{width}x{height}: {text} at {area:?}");
+            for (other, second) in &boxes[k + 1..] {
+                let apart = area.max.cmple(other.min).any() || other.max.cmple(area.min).any();
+                assert!(apart, "{width}x{height}: {text} over {second}");
+            }
+        }
+    }
+
+    fn chart(scale: Scale, name: &str) -> Figure {
+        let curve = |ink: usize, f: &dyn Fn(f64) -> f64| {
+            let points: Vec<Vec2> = (1..=40).map(|k| Vec2::new(f64::from(k), f(f64::from(k)))).collect();
+            let path = Path { subpaths: vec![Subpath::polyline(&points, false).unwrap()] };
+            Layer::curve(path, Ink::Series(ink)).named(format!("{name} {ink}"))
+        };
+        let layers = vec![
+            curve(0, &|x| 3.0 + 2.0 * sin(0.3 * x)),
+            curve(1, &|x| 1e3 / x),
+            curve(2, &|x| exp(-x) + 1e-9),
+            curve(3, &|x| pow(x, 3.0)),
+        ];
+        let axis = |label: &str| Axis { label: label.into(), scale, reversed: false };
+        Figure { title: "A chart".into(), x: axis("time, s"), y: axis("error"), layers, ..Figure::default() }
+    }
+
+    fn shape(data: &str) -> Figure {
+        let path = read_path(data).unwrap();
+        let layers = vec![Layer::curve(path, Ink::Series(0)).named("shape")];
+        Figure { equal: true, layers, ..Figure::default() }
+    }
+
+    const SIZES: [(u32, u32); 6] =
+        [(200, 200), (1200, 900), (2000, 2000), (640, 200), (200, 640), (300, 260)];
+
+    #[test]
+    fn texts_keep_apart_at_every_size() {
+        let shapes = [
+            "M0 0L100 30",
+            "M-1e-7 0L2e-7 1e-7",
+            "M1e8 1e8l.001.001",
+            "M0 0L1e12 3e11",
+            "M5 5L5 9",
+            "M3 3L3 3",
+        ];
+        for (width, height) in SIZES {
+            for data in shapes {
+                check_texts(&shape(data), width, height);
+            }
+            check_texts(&chart(Scale::Linear, "method"), width, height);
+            check_texts(&chart(Scale::Log, "a method with quite a long name, number"), width, height);
+        }
+    }
+
+    #[test]
+    fn the_legend_covers_no_data() {
+        for figure in [chart(Scale::Linear, "curve"), chart(Scale::Log, "curve"), spiral()] {
+            for (width, height) in SIZES {
+                let scene = figure.scene(width, height).unwrap();
+                let named: Vec<&str> =
+                    figure.layers.iter().filter_map(|layer| layer.name.as_deref()).collect();
+                let boxes = boxes(&scene);
+                let legend: Vec<&Area> = boxes
+                    .iter()
+                    .filter(|(_, text)| named.contains(&text.as_str()))
+                    .map(|(area, _)| area)
+                    .collect();
+                let colors: Vec<Color> = (0..6).map(|k| figure.theme.color(Ink::Series(k))).collect();
+                for item in &scene.items {
+                    let Item::Line { path, color, .. } = item else { continue };
+                    let data = path.pieces().count() > 2 && colors.contains(color);
+                    for point in path.pieces().map(|piece| piece.eval(0.5)).filter(|_| data) {
+                        let covered =
+                            |area: &&&Area| point.cmpge(area.min).all() && point.cmple(area.max).all();
+                        assert!(!legend.iter().any(|area| covered(&area)), "{width}x{height}: {point}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// A curve that leaves no corner free.
+    fn spiral() -> Figure {
+        let at = |k: i32| {
+            let angle = 0.05 * f64::from(k);
+            Vec2::new(angle * cos(angle), angle * sin(angle))
+        };
+        let points: Vec<Vec2> = (0..4000).map(at).collect();
+        let path = Path { subpaths: vec![Subpath::polyline(&points, false).unwrap()] };
+        let layers = vec![Layer::curve(path, Ink::Series(0)).named("a spiral")];
+        Figure { layers, ..Figure::default() }
+    }
+
+    #[test]
+    fn equal_units_are_equal_and_y_runs_as_told() {
+        let figure = shape("M0 0L10 0L10 10L0 10z");
+        let [low, high] = range(&figure);
+        let whole = Area { min: Vec2::ZERO, max: Vec2::new(700.0, 400.0) };
+        let mut frame = framed(&figure, [low, high], whole, Measures::of(700, 400), [0.0; 2]);
+        let side = |frame: &Frame<'_>, to: Vec2| frame.pixel(to) - frame.pixel(Vec2::ZERO);
+        let (x, y) = (side(&frame, Vec2::new(10.0, 0.0)), side(&frame, Vec2::new(0.0, 10.0)));
+        assert!((x.x + y.y).abs() < 1e-9 && x.y.abs() < 1e-9 && y.y < 0.0, "{x} {y}");
+        let reversed = Figure { y: Axis { reversed: true, ..Axis::default() }, ..figure.clone() };
+        frame = framed(&reversed, [low, high], whole, Measures::of(700, 400), [0.0; 2]);
+        assert!(side(&frame, Vec2::new(0.0, 10.0)).y > 0.0);
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_an_error() {
+        use crate::plot::PlotError;
+        let at = |p: Vec2| Figure {
+            layers: vec![Layer::new(Content::Note(p, "x".into()), Ink::Text)],
+            ..Figure::default()
+        };
+        for point in [Vec2::NAN, Vec2::new(0.0, f64::INFINITY), Vec2::new(1e151, 0.0)] {
+            assert!(matches!(at(point).scene(99, 99), Err(PlotError::OutOfRange { layer: 0, .. })));
+        }
+        let mut log = at(Vec2::new(1.0, -2.0));
+        log.y.scale = Scale::Log;
+        assert_eq!(log.scene(99, 99), Err(PlotError::NotPositive { layer: 0, value: -2.0 }));
+        for (width, height) in [(0, 99), (99, 31), (16_385, 99), (16_384, 16_384)] {
+            assert_eq!(Figure::default().scene(width, height), Err(PlotError::Size { width, height }));
+        }
+        assert!(Figure::default().scene(99, 99).is_ok());
+    }
+
+    proptest! {
+        #[test]
+        fn everything_drawn_is_in_the_picture(
+            points in prop::collection::vec((-1e3..1e3_f64, -1e3..1e3_f64), 2..9), power in -140..140,
+        ) {
+            let size = pow(10.0, f64::from(power));
+            let points: Vec<Vec2> = points.into_iter().map(|p| Vec2::from(p) * size).collect();
+            let path = Path { subpaths: vec![Subpath::polyline(&points, true).unwrap()] };
+            let figure = Figure { equal: true, layers: vec![Layer::curve(path, Ink::Series(0))], ..Figure::default() };
+            let scene = figure.scene(300, 200).unwrap();
+            for item in &scene.items {
+                if let Item::Line { path, .. } = item {
+                    for point in path.pieces().map(Piece::start) {
+                        prop_assert!(point.cmpge(Vec2::ZERO).all() && point.x <= 300.0 && point.y <= 200.0, "{}", point);
+                    }
+                }
+            }
+        }
+    }
 }

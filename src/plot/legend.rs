@@ -1,7 +1,7 @@
 //! The legend: a box of names that covers nothing.
 
 use super::figure::{Content, Figure, Layer};
-use super::layout::{Area, Measures, marks, shortened};
+use super::layout::{Area, Measures, faint, marks, shortened};
 use super::scene::{Anchor, Item, Text};
 use super::text;
 use crate::curve::{Path, Subpath};
@@ -38,9 +38,10 @@ impl Legend {
         Some(Legend { rows, em, size })
     }
 
-    /// Pixels to the right of the frame, or below it, that it takes when it stands there.
+    /// Pixels to the right of the frame, or below it, that it takes when it stands there: wherever more is left.
     pub(super) fn room_outside(&self, whole: Vec2) -> [f64; 2] {
-        if self.size.x <= 0.4 * whole.x { [self.size.x, 0.0] } else { [0.0, self.size.y] }
+        let (beside, below) = ((whole.x - self.size.x) * whole.y, whole.x * (whole.y - self.size.y));
+        if beside >= below { [self.size.x, 0.0] } else { [0.0, self.size.y] }
     }
 
     /// Its upper left corner in that room.
@@ -79,6 +80,12 @@ fn sample(layer: &Layer, from: Vec2, to: Vec2, figure: &Figure, measures: Measur
         Content::Marks(mark, _) => {
             let background = figure.theme.background;
             marks(*mark, &[0.5 * (from + to)], 1.7 * width, color, background, items);
+        }
+        Content::Area(_) => {
+            let half = Vec2::new(0.0, 0.4 * measures.text);
+            let corners = [from - half, to - half, to + half, from + half];
+            let path = Path { subpaths: Subpath::polyline(&corners, true).into_iter().collect() };
+            items.push(Item::Fill { path, color: faint(color) });
         }
         _ => {
             let path = Path { subpaths: Subpath::polyline(&[from, to], false).into_iter().collect() };

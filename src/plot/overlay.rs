@@ -43,18 +43,15 @@ pub struct Overlay {
     pub unresolved: usize,
 }
 
-/// The layers that show this of these paths. Arcs are shown as the cubics that follow them to a millionth of the
-/// figure's size.
+/// The layers that show this of these paths. Arcs have no control points; for hulls and intersections they are the
+/// cubics that follow them to a millionth of the figure's size.
 pub fn overlay(paths: &[&Path], show: &Show) -> Overlay {
     let boxes = paths.iter().filter_map(|path| path.bounding_box());
     let Some(bounds) = boxes.reduce(|a, b| Bounds { min: a.min.min(b.min), max: a.max.max(b.max) }) else {
         return Overlay::default();
     };
     let size = (bounds.max - bounds.min).length();
-    let subject = Subject {
-        size,
-        subpaths: paths.iter().flat_map(|path| &path.subpaths).map(|s| cubics(s, size)).collect(),
-    };
+    let subject = Subject { size, subpaths: paths.iter().flat_map(|path| &path.subpaths).collect() };
     let mut overlay = Overlay::default();
     let layers = &mut overlay.layers;
     if show.hull {
@@ -96,25 +93,14 @@ pub fn overlay(paths: &[&Path], show: &Show) -> Overlay {
     overlay
 }
 
-/// The pieces to explain, lines and Bézier curves, subpath by subpath.
-struct Subject {
+/// What is to be explained.
+struct Subject<'a> {
     /// The diagonal of the box around everything.
     size: f64,
-    subpaths: Vec<(Vec<Piece>, bool)>,
+    subpaths: Vec<&'a Subpath>,
 }
 
-fn cubics(subpath: &Subpath, size: f64) -> (Vec<Piece>, bool) {
-    let follow = |piece: &Piece| match piece {
-        Piece::Arc(arc) => {
-            let cubics = arc.cubics((1e-6 * size).max(f64::MIN_POSITIVE)).unwrap_or_default();
-            cubics.into_iter().map(Piece::Cubic).collect()
-        }
-        other => vec![*other],
-    };
-    (subpath.pieces().iter().flat_map(follow).collect(), subpath.is_closed())
-}
-
-/// Control points of a piece without arcs.
+/// Control points of a piece; for an arc its ends.
 fn control(piece: &Piece) -> Vec<Vec2> {
     match piece {
         Piece::Line(curve) => curve.points().to_vec(),
@@ -122,11 +108,6 @@ fn control(piece: &Piece) -> Vec<Vec2> {
         Piece::Cubic(curve) => curve.points().to_vec(),
         Piece::Arc(arc) => vec![arc.start(), arc.end()],
     }
-}
-
-/// The piece as a cubic.
-fn cubic(piece: &Piece) -> Option<Cubic<Vec2>> {
-    piece.cubics(1.0).ok()?.into_iter().next()
 }
 
 fn boxes_of(paths: &[&Path]) -> Layer {
@@ -146,19 +127,28 @@ fn dashed(layer: Layer) -> Layer {
 /// Needles on a curve, evenly by parameter.
 const NEEDLES: usize = 5;
 /// Teeth of a comb.
-const TEETH: usize = 24;
+const TEETH: usize = 40;
 /// Length of needles, and of the longest tooth, as a share of the figure.
 const NEEDLE: f64 = 0.07;
-const TOOTH: f64 = 0.15;
+const TOOTH: f64 = 0.1;
 
-impl Subject {
+impl Subject<'_> {
     fn pieces(&self) -> impl Iterator<Item = &Piece> {
-        self.subpaths.iter().flat_map(|(pieces, _)| pieces)
+        self.subpaths.iter().flat_map(|subpath| subpath.pieces())
+    }
+
+    /// Cubics that are the piece, or follow it if it is an arc.
+    fn cubics(&self, piece: &Piece) -> Vec<Cubic<Vec2>> {
+        piece.cubics((1e-6 * self.size).max(f64::MIN_POSITIVE)).unwrap_or_default()
     }
 
     fn hulls(&self) -> Layer {
-        let hull = |piece: &Piece| Subpath::polyline(&convex_hull(&control(piece)), true).ok();
-        let path = Path { subpaths: self.pieces().filter_map(hull).collect() };
+        let hull = |points: Vec<Vec2>| Subpath::polyline(&convex_hull(&points), true).ok();
+        let points = |piece: &Piece| match piece {
+            Piece::Arc(_) => self.cubics(piece).iter().flat_map(|cubic| cubic.to_array()).collect(),
+            piece => control(piece),
+        };
+        let path = Path { subpaths: self.pieces().map(points).filter_map(hull).collect() };
         Layer::new(Content::Area(path), Ink::Series(5)).named("hull")
     }
 
@@ -174,9 +164,9 @@ impl Subject {
             points[1..points.len() - 1].to_vec()
         };
         let controls: Vec<Vec2> = self.pieces().flat_map(inner).collect();
-        let ends = self.subpaths.iter().flat_map(|(pieces, closed)| {
-            let last = pieces.last().filter(|_| !closed).map(Piece::end);
-            pieces.iter().map(Piece::start).chain(last)
+        let ends = self.subpaths.iter().flat_map(|subpath| {
+            let last = (!subpath.is_closed()).then(|| subpath.end());
+            subpath.pieces().iter().map(Piece::start).chain(last)
         });
         [
             Layer::new(Content::Marks(Mark::Ring, controls), Ink::Muted)
@@ -249,23 +239,25 @@ impl Subject {
             tips.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         }
         [
-            Layer::new(Content::Segments(segments), Ink::Series(2)).weighing(0.35),
-            Layer::new(Content::Segments(tips), Ink::Series(2)).weighing(0.6).named("curvature"),
+            Layer::new(Content::Segments(segments), Ink::Muted).weighing(0.3),
+            Layer::new(Content::Segments(tips), Ink::Muted).weighing(0.7).named("curvature"),
         ]
     }
 
     fn inflections(&self) -> Layer {
-        let cubics = self.pieces().filter(|piece| !matches!(piece, Piece::Line(_))).filter_map(cubic);
-        let points =
-            cubics.flat_map(|cubic| cubic.inflections().iter().map(|&t| cubic.eval(t)).collect::<Vec<_>>());
+        let points = self.pieces().flat_map(|piece| match piece {
+            Piece::Cubic(cubic) => cubic.inflections().iter().map(|&t| cubic.eval(t)).collect(),
+            _ => Vec::new(),
+        });
         Layer::new(Content::Marks(Mark::Diamond, points.collect()), Ink::Series(1)).named("inflections")
     }
 
     /// Joints by what the pieces have in common there.
     fn joints(&self) -> [Layer; 3] {
         let mut kinds: [Vec<Vec2>; 3] = Default::default();
-        for (pieces, closed) in &self.subpaths {
-            let around = closed.then(|| (&pieces[pieces.len() - 1], &pieces[0]));
+        for subpath in &self.subpaths {
+            let pieces = subpath.pieces();
+            let around = subpath.is_closed().then(|| (&pieces[pieces.len() - 1], &pieces[0]));
             for (before, after) in pieces.windows(2).map(|pair| (&pair[0], &pair[1])).chain(around) {
                 kinds[smoothness(before, after)].push(after.start());
             }
@@ -281,26 +273,22 @@ impl Subject {
 
     /// Meetings of pieces, but for the joints of neighbours; and how many pairs could not be decided.
     fn intersections(&self) -> (Layer, usize) {
-        let joined = self.subpaths.iter().enumerate().flat_map(|(path, (pieces, closed))| {
-            let count = pieces.len();
-            pieces.iter().enumerate().map(move |(index, piece)| Part {
-                piece,
-                path,
-                index,
-                count,
-                closed: *closed,
-            })
-        });
-        let mut parts: Vec<(Part<'_>, Cubic<Vec2>, Bounds<Vec2>)> = joined
-            .filter_map(|part| {
-                let cubic = cubic(part.piece)?;
-                Some((part, cubic, bounding_box(&cubic)))
-            })
-            .collect();
+        let mut parts = Vec::new();
+        for (path, subpath) in self.subpaths.iter().enumerate() {
+            let cubics = subpath.pieces().iter().flat_map(|piece| {
+                let straight = matches!(piece, Piece::Line(_));
+                self.cubics(piece).into_iter().map(move |cubic| (cubic, straight))
+            });
+            let cubics: Vec<(Cubic<Vec2>, bool)> = cubics.collect();
+            let (count, closed) = (cubics.len(), subpath.is_closed());
+            parts.extend(cubics.into_iter().enumerate().map(|(index, (cubic, straight))| {
+                (Part { straight, path, index, count, closed }, cubic, bounding_box(&cubic))
+            }));
+        }
         parts.sort_by(|a, b| a.2.min.x.total_cmp(&b.2.min.x));
         let (mut points, mut unresolved) = (Vec::new(), 0);
         for (k, (part, curve, bounds)) in parts.iter().enumerate() {
-            if !matches!(part.piece, Piece::Line(_)) {
+            if !part.straight {
                 let own = self_intersections(curve).unwrap_or_default();
                 points.extend(own.iter().map(|meeting| meeting.point));
             }
@@ -329,18 +317,19 @@ impl Subject {
 }
 
 /// A piece and where it stands in its subpath.
-struct Part<'a> {
-    piece: &'a Piece,
+struct Part {
+    /// Whether it is a line.
+    straight: bool,
     path: usize,
     index: usize,
     count: usize,
     closed: bool,
 }
 
-impl Part<'_> {
+impl Part {
     /// Whether these parameters are the joint of this piece with a neighbour.
-    fn joins(&self, other: &Part<'_>, s: f64, t: f64) -> bool {
-        let follows = |before: &Part<'_>, after: &Part<'_>, end: f64, start: f64| {
+    fn joins(&self, other: &Part, s: f64, t: f64) -> bool {
+        let follows = |before: &Part, after: &Part, end: f64, start: f64| {
             let next = before.index + 1 == after.index
                 || (before.closed && after.index == 0 && before.index + 1 == before.count);
             // Parameters at a tangent joint are good to half of the digits.
