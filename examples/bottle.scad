@@ -19,7 +19,7 @@ difference() {
 }
 
 // The stopper: a closed curve through points on two circles.
-star = [for (i = [0:2 * lobes - 1]) let (r = i % 2 == 0 ? 13 : 9, a = 180 * i / lobes) [r * cos(a), r * sin(a)]];
+star = [for (i = [0:2 * lobes - 1]) let (r = i % 2 == 0 ? 12.6 : 10.4, a = 180 * i / lobes) [r * cos(a), r * sin(a)]];
 
 translate([48, 0, 0]) color([0.86, 0.62, 0.36]) {
   linear_extrude(height = 9, twist = 12, slices = 12) polygon(spline(star, closed = true, tolerance = 0.02));

@@ -45,7 +45,7 @@ fn measures_of_drawings() {
     };
     assert_eq!(found["paths"].as_array().map(Vec::len), Some(4));
     near(number(0, "length"), 141.217_498_362_787_715_22);
-    near(number(0, "area"), -3150.0);
+    near(number(0, "area"), -3060.0);
     near(number(1, "length"), 20.0 * std::f64::consts::PI);
     near(number(1, "area"), 100.0 * std::f64::consts::PI);
     near(number(3, "length"), 6.0);
@@ -108,9 +108,9 @@ fn what_cannot_be_drawn_is_refused() {
         (
             "plot bad.svg -o old.svg",
             1,
-            "bad.svg: line 2, column 15: the value ends where a number should follow",
+            "bad.svg: line 2, column 16: the value ends where a number should follow",
         ),
-        ("info bad.svg", 1, "bad.svg: line 2, column 15"),
+        ("info bad.svg", 1, "bad.svg: line 2, column 16"),
         ("plot bad.csv -o old.svg", 1, "bad.csv: line 3: expected a number, found `four`"),
         ("plot chart.csv -o old.svg --x tim", 1, "there is no column `tim`; there are method, time, error"),
         ("plot points.csv -o old.svg --log y", 1, "0 has no place on a logarithmic axis"),

@@ -192,9 +192,9 @@ impl Arc {
         // From the ends of the short half-axis: the speed is least at odd multiples of a quarter turn.
         let from = self.angle - offset + FRAC_PI_2;
         let turns = (from / PI).round() * PI;
-        let (low, high) = (from - turns, from - turns + self.sweep);
-        let unit = Speed { ratio: b / a }.integral(low.min(high), low.max(high));
-        let value = a * unit;
+        // The sweep as it is: a difference of angles would have lost the digits of a small one.
+        let low = (from - turns).min(from - turns + self.sweep);
+        let value = a * Speed { ratio: b / a }.integral(low, self.sweep.abs());
         if !value.is_finite() {
             return Err(CurveError::NotFinite { index: 0 });
         }
@@ -246,7 +246,8 @@ impl Arc {
         if tolerance < finest {
             return Err(CurveError::ToleranceTooFine { value: tolerance, finest });
         }
-        let count = self.count(0.5 * tolerance / radius);
+        // What rounding may add is kept back.
+        let count = self.count((tolerance - 0.5 * finest) / radius);
         let step = self.sweep / count as f64;
         let arm = 4.0 / 3.0 * tan(0.25 * step);
         let corner = |k: usize| match k {
@@ -346,19 +347,20 @@ impl Speed {
         hypot(cosine, self.ratio * sine)
     }
 
-    /// The length over ascending angles.
+    /// The length over angles from `low` on.
     ///
     /// The square of the speed vanishes at odd quarter turns plus i artanh(ratio). On an interval whose half-width is
     /// at most half of the distance to the next such place, the function is analytic in an ellipse of parameter
     /// rho >= 2 + sqrt 3, where 16 nodes err by less than rounding; other intervals are halved.
-    fn integral(&self, low: f64, high: f64) -> f64 {
-        let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * (high - low));
+    fn integral(&self, low: f64, width: f64) -> f64 {
+        let half = 0.5 * width;
+        let middle = low + half;
         let nearest = ((middle - FRAC_PI_2) / PI).round() * PI + FRAC_PI_2;
         let distance = hypot(middle - nearest, self.ratio);
-        // Below the rounding of the angle nothing is left to resolve.
-        if half <= 0.5 * distance || half < 0.25 * f64::EPSILON {
-            return integrate(GAUSS_16, low, high, |angle| self.at(angle));
+        // Between neighbouring angles nothing is left to resolve.
+        if half <= 0.5 * distance || middle <= low || middle >= low + width {
+            return width * integrate(GAUSS_16, 0.0, 1.0, |share| self.at(low + share * width));
         }
-        self.integral(low, middle) + self.integral(middle, high)
+        self.integral(low, half) + self.integral(middle, half)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Arc, Bernstein, Bounded, Bounds, Cubic, Curve, CurveError, Jet, Line, Quadratic};
 use super::{bounding_box, check_tolerance, length};
-use crate::math::{Affine2, Vec2};
+use crate::math::{Affine2, Blend, Vec2};
 use crate::numeric::double_double::DoubleDouble;
 
 /// Any number of subpaths.
@@ -131,7 +131,7 @@ impl Piece {
         // Seen from its start: differences are exact to their own last digit, whatever the origin.
         let near = Affine2::from_translation(-self.start());
         match self.map(&near).unwrap_or(*self) {
-            Piece::Line(curve) => length(&curve, accuracy),
+            Piece::Line(line) => straight(line.end()),
             Piece::Quadratic(curve) => length(&curve, accuracy),
             Piece::Cubic(curve) => length(&curve, accuracy),
             Piece::Arc(arc) => arc.length(),
@@ -182,6 +182,13 @@ impl Piece {
             Piece::Arc(arc) => across(arc.start(), arc.end(), origin) + arc.twice_segment_area(),
         }
     }
+}
+
+/// The length of a vector.
+fn straight(line: Vec2) -> Result<Bounded<f64>, CurveError> {
+    let value = line.norm();
+    let finite = value.is_finite().then_some(Bounded { value, error: 4.0 * f64::EPSILON * value });
+    finite.ok_or(CurveError::NotFinite { index: 0 })
 }
 
 /// The cross product of two points seen from `origin`.

@@ -182,7 +182,7 @@ impl Layer {
 
     /// A point that no figure can hold.
     fn misfit(&self) -> Option<Vec2> {
-        let wrong = |point: &Vec2| !(point.abs().max_element() <= Figure::LARGEST) || point.is_nan();
+        let wrong = |point: &Vec2| point.is_nan() || point.abs().max_element() > Figure::LARGEST;
         match &self.content {
             Content::Curve(path) | Content::Area(path) => {
                 let corners = path.bounding_box().map(|b| [b.min, b.max])?;

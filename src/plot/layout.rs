@@ -58,26 +58,42 @@ pub(super) fn scene(figure: &Figure, width: u32, height: u32) -> Scene {
     let measures = Measures::of(width, height);
     let whole = Area { min: Vec2::ZERO, max: Vec2::new(f64::from(width), f64::from(height)) };
     let data = range(figure);
-    let legend = Legend::of(figure, measures, whole.size());
     let mut frame = framed(figure, data, whole, measures, [0.0; 2]);
-    let mut corner = None;
-    if let Some(legend) = &legend {
-        corner = legend::free_corner(legend, &frame.area, &drawn_places(figure, &frame, measures));
-        if corner.is_none() {
-            let room = legend.room_outside(whole.size());
-            frame = framed(figure, data, whole, measures, room);
-            corner = Some(legend.outside(&frame.area, room));
-        }
-    }
+    let legend = placed(figure, &mut frame, data, whole, measures);
     let mut items = Vec::new();
     let [across, up] = frame.ticks(measures);
     grid(&frame, &across, &up, measures, &mut items);
     labels(&frame, &across, &up, whole, measures, &mut items);
     figure.layers.iter().for_each(|layer| draw(layer, &frame, measures, &mut items));
-    if let (Some(legend), Some(corner)) = (&legend, corner) {
-        legend.draw(corner, figure, measures, &mut items);
+    if let Some((legend, corner)) = &legend {
+        legend.draw(*corner, figure, measures, &mut items);
     }
     Scene { width, height, background: figure.theme.background, items }
+}
+
+/// The legend and its upper left corner: in a corner of the frame that no data reach, else beside or below a smaller
+/// frame, wherever more of it is left.
+fn placed<'a>(
+    figure: &'a Figure,
+    frame: &mut Frame<'a>,
+    data: [Vec2; 2],
+    whole: Area,
+    measures: Measures,
+) -> Option<(Legend, Vec2)> {
+    let Vec2 { x: width, y: height } = whole.size();
+    let beside = Legend::of(figure, measures, 0.4 * width, 0.8 * height)?;
+    if let Some(corner) = legend::free_corner(&beside, &frame.area, &drawn_places(figure, frame, measures)) {
+        return Some((beside, corner));
+    }
+    let below = Legend::of(figure, measures, width, 0.5 * height)?;
+    if (width - beside.size().x) * height >= width * (height - below.size().y) {
+        *frame = framed(figure, data, whole, measures, [beside.size().x, 0.0]);
+        let corner = Vec2::new(width - beside.size().x, frame.area.min.y);
+        return Some((beside, corner));
+    }
+    *frame = framed(figure, data, whole, measures, [0.0, below.size().y]);
+    let corner = Vec2::new(0.5 * measures.text, height - below.size().y);
+    Some((below, corner))
 }
 
 /// The numbers that must be in sight, in the axes' own scales.

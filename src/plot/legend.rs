@@ -16,15 +16,16 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The legend of a figure, if it names anything. Rows that do not fit are counted in the last one.
-    pub(super) fn of(figure: &Figure, measures: Measures, whole: Vec2) -> Option<Legend> {
+    /// The legend of a figure no wider and higher than so many pixels, if it names anything. Rows that do not fit are
+    /// counted in the last one.
+    pub(super) fn of(figure: &Figure, measures: Measures, widest: f64, highest: f64) -> Option<Legend> {
         let em = measures.text;
-        let room = 0.4 * whole.x - 3.4 * em;
+        let room = widest - 3.4 * em;
         let named =
             figure.layers.iter().enumerate().filter_map(|(index, layer)| Some((index, layer.name.as_ref()?)));
         let mut rows: Vec<(Option<usize>, String)> =
             named.map(|(index, name)| (Some(index), shortened(name, em, room))).collect();
-        let most = ((0.8 * whole.y / (1.6 * em)) as usize).max(1);
+        let most = ((highest / em - 0.5) / 1.6).max(1.0) as usize;
         if rows.len() > most {
             let more = rows.len() - most + 1;
             rows.truncate(most - 1);
@@ -38,18 +39,9 @@ impl Legend {
         Some(Legend { rows, em, size })
     }
 
-    /// Pixels to the right of the frame, or below it, that it takes when it stands there: wherever more is left.
-    pub(super) fn room_outside(&self, whole: Vec2) -> [f64; 2] {
-        let (beside, below) = ((whole.x - self.size.x) * whole.y, whole.x * (whole.y - self.size.y));
-        if beside >= below { [self.size.x, 0.0] } else { [0.0, self.size.y] }
-    }
-
-    /// Its upper left corner in that room.
-    pub(super) fn outside(&self, area: &Area, [right, _]: [f64; 2]) -> Vec2 {
-        match right > 0.0 {
-            true => Vec2::new(area.max.x + 0.5 * self.em, area.min.y),
-            false => Vec2::new(area.min.x, area.max.y + 2.0 * self.em),
-        }
+    /// Its width and height in pixels.
+    pub(super) fn size(&self) -> Vec2 {
+        self.size
     }
 
     pub(super) fn draw(&self, corner: Vec2, figure: &Figure, measures: Measures, items: &mut Vec<Item>) {

@@ -149,7 +149,7 @@ impl Subject<'_> {
             piece => control(piece),
         };
         let path = Path { subpaths: self.pieces().map(points).filter_map(hull).collect() };
-        Layer::new(Content::Area(path), Ink::Series(5)).named("hull")
+        Layer::new(Content::Area(path), Ink::Muted).named("hull")
     }
 
     fn polygons(&self) -> Layer {
@@ -239,8 +239,8 @@ impl Subject<'_> {
             tips.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         }
         [
-            Layer::new(Content::Segments(segments), Ink::Muted).weighing(0.3),
-            Layer::new(Content::Segments(tips), Ink::Muted).weighing(0.7).named("curvature"),
+            Layer::new(Content::Segments(segments), Ink::Series(5)).weighing(0.35),
+            Layer::new(Content::Segments(tips), Ink::Series(5)).weighing(0.8).named("curvature"),
         ]
     }
 

@@ -7,7 +7,7 @@ use crate::cli::stop::Stop;
 use crate::cli::terminal::Terminal;
 use crate::csg::Shape;
 use crate::curve::{Path, Subpath};
-use crate::io::csv::{self, Row, Table};
+use crate::io::csv::{Row, Table, read as read_table};
 use crate::io::json;
 use crate::io::svg::Shape as DrawnShape;
 use crate::math::Vec2;
@@ -104,7 +104,7 @@ fn points(args: &Args, source: &Source) -> Result<Drawn, Stop> {
 
 fn table(args: &Args, source: &Source) -> Result<Drawn, Stop> {
     let bytes = source.bytes().map_err(|error| Stop::about(source, error))?;
-    let table = csv::read(&bytes).map_err(|error| Stop::about(source, error))?;
+    let table = read_table(&bytes).map_err(|error| Stop::about(source, error))?;
     let columns = Columns::chosen(args, &table).map_err(|error| Stop::about(source, error))?;
     let series = columns.series(&table).map_err(|error| Stop::about(source, error))?;
     let chart = table.has_header || columns.y.len() > 1 || columns.by.is_some();

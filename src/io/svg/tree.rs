@@ -133,7 +133,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             "symbol" if around.named => push_children(node, self.nested(node, around)?, tasks),
             "use" => tasks.extend(self.follow(node, around)?),
             "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon" => {
-                self.draw(node, around)?
+                self.draw(node, around)?;
             }
             "text" | "image" | "foreignObject" => *self.ignored.entry(name).or_default() += 1,
             _ => {}

@@ -211,10 +211,7 @@ fn append(text: &mut String, value: f64) {
 fn ends_with_fraction(text: &str) -> bool {
     let number = |c: char| c.is_ascii_digit() || matches!(c, '.' | 'e' | '-');
     let last = text.rsplit(|c: char| !number(c)).next().unwrap_or_default();
-    let last = last
-        .rfind(|c: char| c == '-')
-        .filter(|&at| !last[..at].ends_with('e'))
-        .map_or(last, |at| &last[at..]);
+    let last = last.rfind('-').filter(|&at| !last[..at].ends_with('e')).map_or(last, |at| &last[at..]);
     last.contains('.') || last.contains('e')
 }
 

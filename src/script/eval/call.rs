@@ -202,11 +202,11 @@ impl<'p> Machine<'p> {
     fn warn_of_unknown_parameter(&mut self, name: Symbol, parameters: &[Parameter], span: Span) {
         let names = &self.program.names;
         let known: Vec<&str> = parameters.iter().map(|parameter| names.text(parameter.name)).collect();
-        self.warn_of_unknown_name(names.text(name).to_owned(), &known, span);
+        self.warn_of_unknown_name(names.text(name), &known, span);
     }
 
-    fn warn_of_unknown_name(&mut self, name: String, known: &[&str], span: Span) {
-        let hint = match crate::script::suggest::closest(&name, known.iter().copied()) {
+    fn warn_of_unknown_name(&mut self, name: &str, known: &[&str], span: Span) {
+        let hint = match crate::script::suggest::closest(name, known.iter().copied()) {
             Some(meant) => format!("did you mean {meant}?"),
             None if known.is_empty() => "there are no parameters".to_owned(),
             None => format!("the parameters are {}", known.join(", ")),
@@ -342,7 +342,7 @@ impl<'p> Machine<'p> {
                     let text = self.program.names.text(name);
                     match builtin.parameters.iter().position(|parameter| *parameter == text) {
                         Some(index) => values[index] = value,
-                        None => self.warn_of_unknown_name(text.to_owned(), builtin.parameters, argument.span),
+                        None => self.warn_of_unknown_name(text, builtin.parameters, argument.span),
                     }
                 }
                 None if unnamed < values.len() => {
