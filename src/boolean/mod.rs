@@ -18,18 +18,27 @@
 //! Nehring-Wirxel, Kobbelt 2022) in its winding vectors, and differs from them in working plane by plane.
 
 mod assemble;
+mod body;
 mod carriers;
 mod contacts;
+mod leave;
+mod operand;
+mod pairs;
 mod ray;
 mod regions;
 mod scene;
+mod strategy;
 mod tree;
+mod world;
 
-pub use scene::Operand;
+pub use operand::Operand;
 pub use tree::{Op, Tree};
 
 use crate::mesh::{Defects, Solid};
+use crate::polygon::exact::Snapped;
+use body::Body;
 use std::fmt;
+use world::World;
 
 /// What a boolean hands back.
 #[derive(Clone, Debug, Default)]
@@ -131,11 +140,28 @@ where
 {
     let operands: Vec<Operand<'a>> = operands.iter().map(|&operand| operand.into()).collect();
     check(tree, &operands)?;
-    let mut scene = scene::Scene::new(&operands, resolution);
+    let (world, bodies) = enter(&operands, resolution);
+    let (world, body) = strategy::evaluate(world, bodies, tree);
+    Ok(world.solid_of(body))
+}
+
+/// Puts all operands on the finest lattice for them, or on one as coarse as `resolution` allows.
+fn enter<'a>(operands: &[Operand<'a>], resolution: f64) -> (World<'a>, Vec<Body>) {
+    let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
+    let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let mut world = World::new(Snapped::new(largest, resolution));
+    world.labels = operands.iter().map(|operand| operand.labels).collect();
+    let bodies = (0..).zip(operands).map(|(i, operand)| Body::of_operand(&mut world, i, operand)).collect();
+    (world, bodies)
+}
+
+/// Evaluates an expression of bodies in one arrangement.
+fn arrange<'a>(world: World<'a>, bodies: Vec<Body>, tree: &Tree) -> (World<'a>, Body) {
+    let mut scene = scene::Scene::new(world, bodies);
     let contacts = contacts::find(&mut scene);
     let carriers = carriers::cut(&mut scene, contacts);
     let regions = regions::classify(&scene, &carriers, tree);
-    Ok(assemble::assemble(&scene, &carriers, &regions))
+    assemble::assemble(scene, carriers, &regions)
 }
 
 /// Where `a` or `b` is.

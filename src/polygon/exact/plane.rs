@@ -1,5 +1,6 @@
 use super::width::{Cross, Offset, PlaneAtPoint};
 use super::{PointId, Points, Site};
+use crate::math::Vec3;
 use crate::numeric::Wide;
 
 /// The points `p` with `normal . p = offset`.
@@ -32,6 +33,14 @@ impl Plane {
         normal[u] = d[v];
         normal[v] = -d[u];
         if normal == [0; 3] { None } else { Some(Plane::new(reduced(normal), a)) }
+    }
+
+    /// The plane of all points with one coordinate, its normal along that axis.
+    pub fn across(axis: usize, coordinate: i64) -> Plane {
+        let (mut normal, mut through) = ([0; 3], [0; 3]);
+        normal[axis] = 1;
+        through[axis] = coordinate;
+        Plane::new(normal, through)
     }
 
     fn new(normal: [i128; 3], through: Site) -> Plane {
@@ -120,6 +129,21 @@ impl Plane {
             return if left > right { 1 } else { -1 };
         }
         self.cross(other, u, v).signum()
+    }
+
+    /// An axis along which `self.normal x other.normal` does not vanish: the one along which it is longest, as far as
+    /// doubles can tell; `None` for parallel planes.
+    pub fn longest_cross_axis(&self, other: &Plane) -> Option<usize> {
+        let normals = [self, other].map(|plane| Vec3::from_array(plane.rounded_normal()));
+        let [x, y, z] = normals[0].cross(normals[1]).abs().to_array();
+        let longest = if x >= y && x >= z {
+            0
+        } else if y >= z {
+            1
+        } else {
+            2
+        };
+        [longest, 0, 1, 2].into_iter().find(|&axis| self.cross_sign(other, axis) != 0)
     }
 
     fn cross(&self, other: &Plane, u: usize, v: usize) -> Cross {
