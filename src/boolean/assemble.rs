@@ -13,31 +13,42 @@ use crate::polygon::exact::{Boundary, PointId, followers, triangulate};
 /// Builds the surface between inside and outside.
 pub(super) fn assemble<'a>(scene: Scene<'a>, carriers: Carriers, regions: &Regions) -> (World<'a>, Body) {
     let (mut scene, mut carriers) = (scene, carriers);
-    let joints = pair_wedges(regions);
+    let Joints { of_fin: joints, crowded } = pair_wedges(regions);
     let faces = merge_cells(&scene, &carriers, regions, &joints);
     let mut rims = Rims::new(&carriers, regions, &faces, &joints);
-    rims.straighten(&scene, &carriers, &faces);
+    let middles = rims.straighten(&scene, &carriers, &faces);
+    let touches_itself = faces.any_merged_across(regions, &joints, &crowded)
+        || middles.any_met_by_others(&scene, &carriers, regions);
     let mut surface = Surface { of_rim: vec![NONE; rims.rims.len()], ..Surface::default() };
     surface.add_whole_triangles(&scene, &carriers, regions);
     for face in 0..rims.of_face.len() {
         surface.add_face(&mut scene, &mut carriers, &faces, &rims, face);
     }
     surface.join(regions, &rims, &joints);
-    let body = surface.finish(&scene);
+    let body = surface.finish(&scene, !touches_itself);
     (scene.world, body)
 }
 
-/// For each fin of a kept cell, the fin on the other flank of the solid wedge beside it; [`NONE`] for other fins.
-fn pair_wedges(regions: &Regions) -> Vec<u32> {
-    let mut joints = vec![NONE; regions.fins.len()];
+/// How kept cells are joined along edges.
+struct Joints {
+    /// For each fin of a kept cell, the fin on the other flank of the solid wedge beside it; [`NONE`] for other fins.
+    of_fin: Vec<u32>,
+    /// For each fin, whether several wedges meet at its edge.
+    crowded: Vec<bool>,
+}
+
+fn pair_wedges(regions: &Regions) -> Joints {
+    let count = regions.fins.len();
+    let mut joints = Joints { of_fin: vec![NONE; count], crowded: vec![false; count] };
     for range in &regions.edges {
         let kept: Vec<u32> =
             range.clone().filter(|&f| regions.is_kept(regions.fins[f as usize].cell)).collect();
         for (i, &fin) in kept.iter().enumerate() {
+            joints.crowded[fin as usize] = kept.len() > 2;
             if regions.is_solid_after(&regions.fins[fin as usize]) {
                 let other = kept[(i + 1) % kept.len()];
-                joints[fin as usize] = other;
-                joints[other as usize] = fin;
+                joints.of_fin[fin as usize] = other;
+                joints.of_fin[other as usize] = fin;
             }
         }
     }
@@ -82,6 +93,17 @@ fn merge_cells(scene: &Scene<'_>, carriers: &Carriers, regions: &Regions, joints
         }
     }
     Faces { of_cell, faces }
+}
+
+impl Faces {
+    /// Whether a face goes on across an edge that another wedge touches.
+    fn any_merged_across(&self, regions: &Regions, joints: &[u32], crowded: &[bool]) -> bool {
+        (0..joints.len()).filter(|&fin| crowded[fin] && joints[fin] != NONE).any(|fin| {
+            let (fin, other) = (&regions.fins[fin], &regions.fins[joints[fin] as usize]);
+            let face = |fin: &Fin| self.of_cell.get(fin.cell as usize);
+            are_flanks_of_one_edge(fin, other) && face(fin) == face(other)
+        })
+    }
 }
 
 /// Joined pairs of fins.
@@ -169,7 +191,7 @@ impl Rims {
     }
 
     /// Finds how rims follow each other, and makes one of those that run straight on between the same two faces.
-    fn straighten(&mut self, scene: &Scene<'_>, carriers: &Carriers, faces: &Faces) {
+    fn straighten(&mut self, scene: &Scene<'_>, carriers: &Carriers, faces: &Faces) -> Middles {
         for (index, face) in faces.faces.iter().enumerate() {
             let Carrier { chart, lines, .. } = &carriers.carriers[face.carrier as usize];
             let boundary = self.boundary_in_chart(face, index);
@@ -187,6 +209,7 @@ impl Rims {
             .enumerate()
             .map(|(rim, _)| once[rim] && self.runs_on(scene, carriers, faces, rim, &once))
             .collect();
+        let middles = self.middles(&runs_on);
         for (rim, runs_on) in runs_on.iter().enumerate() {
             if *runs_on {
                 let next = self.rims[rim].next as usize;
@@ -204,6 +227,22 @@ impl Rims {
         for members in &mut self.of_face {
             members.retain(|&rim| !self.rims[rim as usize].absorbed);
         }
+        middles
+    }
+
+    /// The points at which rims run straight on.
+    fn middles(&self, runs_on: &[bool]) -> Middles {
+        let passed = (0..self.rims.len()).filter(|&rim| runs_on[rim]);
+        let mut points: Vec<PointId> = passed.map(|rim| self.rims[rim].ends[1]).collect();
+        points.sort_unstable();
+        points.dedup();
+        let mut rims_at = vec![0; points.len()];
+        for end in self.rims.iter().flat_map(|rim| rim.ends) {
+            if let Ok(at) = points.binary_search(&end) {
+                rims_at[at] += 1;
+            }
+        }
+        Middles { points, rims_at }
     }
 
     /// The rims of a face as the chart sees them, with the face on the left.
@@ -245,6 +284,26 @@ impl Rims {
         let ([from, middle], to) = (here.ends, next.ends[1]);
         chart.orientation(scene.points(), from, middle, to) == 0
             && chart.compare(scene.points(), from, middle) == chart.compare(scene.points(), middle, to)
+    }
+}
+
+/// Points at which edges of the result run straight on, without a vertex.
+struct Middles {
+    /// The points, in order.
+    points: Vec<PointId>,
+    /// For each point, how many rims begin or end there.
+    rims_at: Vec<u32>,
+}
+
+impl Middles {
+    /// Whether another edge or vertex touches one of the edges there: two edges have four rims.
+    fn any_met_by_others(&self, scene: &Scene<'_>, carriers: &Carriers, regions: &Regions) -> bool {
+        let is_kept = |t: usize| !carriers.touched[t] && regions.is_kept(regions.cell_of_triangle[t]);
+        self.rims_at.iter().any(|&count| count > 4)
+            || !self.points.is_empty()
+                && (0..scene.corners.len())
+                    .filter(|&t| is_kept(t))
+                    .any(|t| scene.corners[t].iter().any(|corner| self.points.binary_search(corner).is_ok()))
     }
 }
 
@@ -388,7 +447,7 @@ impl Surface {
         }
     }
 
-    fn finish(self, scene: &Scene<'_>) -> Body {
+    fn finish(self, scene: &Scene<'_>, embedded: bool) -> Body {
         debug_assert!(!self.twins.contains(&NONE), "a half-edge without a twin");
         let bounds = Aabb::of(self.corners.iter().flatten().map(|&p| scene.points().rounded(p)));
         Body {
@@ -398,7 +457,7 @@ impl Surface {
             facings: self.facings,
             lines: self.lines,
             bounds,
-            embedded: true,
+            embedded,
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::polygon::exact::{PointId, Points};
 /// Operands have corners on the lattice, and their planes and lines follow from them. Faces that an arrangement cut have
 /// corners anywhere: they remember the plane they lie in, and their boundaries the lines they run on, all of them planes
 /// of operands, so that numbers are no wider in the last step of a long chain than in the first.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Body {
     pub(super) corners: Vec<[PointId; 3]>,
     pub(super) births: Vec<Birth>,

@@ -11,14 +11,17 @@ impl World<'_> {
     /// The solid that a body stands for.
     pub(super) fn solid_of(mut self, body: Body) -> Combined {
         let mut surface = Numbered::new(body);
-        surface.part_double_edges(&mut self);
+        let is_parted = surface.part_double_edges(&mut self);
         let Numbered { body, vertices, count } = surface;
         let mut positions = vec![Vec3::ZERO; count as usize];
         for (&point, &vertex) in body.corners.iter().flatten().zip(&vertices) {
             positions[vertex as usize] = self.places.position(point);
         }
-        let embedded =
-            self.places.is_exact() && body.corners.iter().flatten().all(|&point| self.places.is_given(point));
+        let is_given = |&point: &PointId| self.places.is_given(point);
+        let embedded = body.embedded
+            && !is_parted
+            && self.places.is_exact()
+            && body.corners.iter().flatten().all(is_given);
         let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
         Combined { solid: Solid::assume(mesh, embedded), birth: body.births }
     }
@@ -39,15 +42,15 @@ impl Numbered {
     }
 
     /// Gives each pair of half-edges an edge of its own: where a solid pinches itself along an edge, both wedges may run
-    /// between the same two vertices; all but one of them get a vertex on the way.
-    fn part_double_edges(&mut self, world: &mut World<'_>) {
-        loop {
-            let double = self.double_edges();
-            if double.is_empty() {
-                return;
-            }
+    /// between the same two vertices; all but one of them get a vertex on the way. Tells whether there were any.
+    fn part_double_edges(&mut self, world: &mut World<'_>) -> bool {
+        let mut double = self.double_edges();
+        let any = !double.is_empty();
+        while !double.is_empty() {
             self.part(world, &double);
+            double = self.double_edges();
         }
+        any
     }
 
     /// Parts edges, but none of a triangle that was cut already: its half-edges have moved.

@@ -123,25 +123,45 @@ pub fn evaluate<'a, T>(tree: &Tree, operands: &[T]) -> Result<Combined, BooleanE
 where
     T: Copy + Into<Operand<'a>>,
 {
-    evaluate_on_grid(tree, operands, 0.0)
+    evaluate_with(tree, operands, &Options::default())
 }
 
-/// [`evaluate`] with all coordinates first rounded to multiples of a power of two that is at most `resolution`, so that
-/// parts which were meant to be flush, and miss each other by rounding errors, are.
-///
-/// A resolution finer than that of [`evaluate`], 0 or less or NaN changes nothing. Vertices that do not meet another
-/// operand keep their positions all the same.
+/// How a boolean is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// All coordinates are first rounded to multiples of a power of two that is at most this, in model units, so that
+    /// parts which were meant to be flush, and miss each other by rounding errors, are. 0 or less, NaN, and what is finer
+    /// than the lattice of [`evaluate`] change nothing. Vertices that do not meet another operand keep their positions
+    /// all the same.
+    pub resolution: f64,
+    /// In which steps. They change time and memory; of the result no more than how flat faces are triangulated.
+    pub steps: Steps,
+}
+
+/// In which steps an expression is evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Steps {
+    /// One arrangement where few operands meet at any one place, group by group where many overlap.
+    #[default]
+    Measured,
+    /// One arrangement of all operands.
+    Once,
+    /// One arrangement for each operation on two operands.
+    Pairs,
+}
+
+/// [`evaluate`] with options.
 ///
 /// # Errors
 /// As [`evaluate`].
-pub fn evaluate_on_grid<'a, T>(tree: &Tree, operands: &[T], resolution: f64) -> Result<Combined, BooleanError>
+pub fn evaluate_with<'a, T>(tree: &Tree, operands: &[T], options: &Options) -> Result<Combined, BooleanError>
 where
     T: Copy + Into<Operand<'a>>,
 {
     let operands: Vec<Operand<'a>> = operands.iter().map(|&operand| operand.into()).collect();
     check(tree, &operands)?;
-    let (world, bodies) = enter(&operands, resolution);
-    let (world, body) = strategy::evaluate(world, bodies, tree);
+    let (world, bodies) = enter(&operands, options.resolution);
+    let (world, body) = strategy::evaluate(world, bodies, tree, options.steps);
     Ok(world.solid_of(body))
 }
 

@@ -47,6 +47,29 @@ impl Tree {
         }
     }
 
+    /// The operands it names, in order, and how often it names each.
+    pub(super) fn leaves(&self) -> Vec<(usize, u32)> {
+        let mut named = Vec::new();
+        self.visit(&mut |leaf| named.push(leaf));
+        named.sort_unstable();
+        named.chunk_by(|a, b| a == b).map(|group| (group[0], group.len() as u32)).collect()
+    }
+
+    fn visit(&self, see: &mut impl FnMut(usize)) {
+        match self {
+            Tree::Leaf(index) => see(*index),
+            Tree::Node(_, parts) => parts.iter().for_each(|part| part.visit(see)),
+        }
+    }
+
+    /// The same expression with other names for the operands.
+    pub(super) fn renamed(&self, name: &impl Fn(usize) -> usize) -> Tree {
+        match self {
+            Tree::Leaf(index) => Tree::Leaf(name(*index)),
+            Tree::Node(op, parts) => Tree::Node(*op, parts.iter().map(|part| part.renamed(name)).collect()),
+        }
+    }
+
     /// The largest operand it names, if any.
     pub fn last_operand(&self) -> Option<usize> {
         match self {
