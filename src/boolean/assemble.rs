@@ -355,9 +355,9 @@ impl Surface {
             let (corners, facing) = if turned { ([b, a, c], facing.turned()) } else { ([a, b, c], facing) };
             let triangle = self.push(corners, scene.births[t as usize], facing);
             self.of_whole[t as usize] = triangle;
-            for side in 0..3 {
-                let half_edge = 3 * triangle + if turned { TURNED[side] } else { side as u32 };
-                self.lines[half_edge as usize] = scene.line_index(3 * t + side as u32);
+            let sides = if turned { TURNED } else { [0, 1, 2] };
+            for (half_edge, side) in (3 * t..).zip(sides) {
+                self.lines[(3 * triangle + side) as usize] = scene.line_index(half_edge);
             }
         }
         for (half_edge, &twin) in (0_u32..).zip(&scene.twins) {

@@ -29,7 +29,12 @@ pub(super) struct Body {
 
 impl Body {
     /// Enters an operand into the world. Triangles without area on the lattice are dropped.
-    pub(super) fn of_operand(world: &mut World<'_>, index: u32, operand: &Operand<'_>) -> Body {
+    pub(super) fn of_operand(
+        world: &mut World<'_>,
+        index: u32,
+        operand: &Operand<'_>,
+        topology: &Topology,
+    ) -> Body {
         let mesh = operand.mesh;
         let ids: Vec<PointId> = mesh.positions.iter().map(|&p| world.places.add(p)).collect();
         let mut body = Body::default();
@@ -42,7 +47,7 @@ impl Body {
                 body.births.push(Birth { operand: index, triangle: t });
             }
         }
-        body.twins = twins_of(&mesh.triangles, &slots);
+        body.twins = twins_of(topology, &slots);
         body.bounds = Aabb::of(body.corners.iter().flatten().map(|&p| world.points().rounded(p)));
         body.embedded = operand.embedded && body.corners.len() == mesh.triangles.len();
         body
@@ -74,9 +79,8 @@ impl Default for Body {
 }
 
 /// Twins of the triangles that have a slot, by slots.
-fn twins_of(triangles: &[[u32; 3]], slots: &[u32]) -> Vec<u32> {
-    let topology = Topology::new(triangles);
-    let half_edges = (0..3 * triangles.len() as u32).filter(|&h| slots[h as usize / 3] != NONE);
+fn twins_of(topology: &Topology, slots: &[u32]) -> Vec<u32> {
+    let half_edges = (0..topology.len() as u32).filter(|&h| slots[h as usize / 3] != NONE);
     let twin_slot = |half_edge: u32| match topology.twin(half_edge) {
         Topology::NONE => NONE,
         twin => match slots[twin as usize / 3] {

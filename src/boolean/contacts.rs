@@ -9,7 +9,8 @@ use super::pairs::candidates;
 use super::scene::Scene;
 use super::world::NONE;
 use crate::numeric::DisjointSets;
-use crate::polygon::exact::{Plane, PointId};
+use crate::math::Vec3;
+use crate::polygon::exact::{Plane, PointId, Points};
 use std::cmp::Ordering;
 
 /// What two faces of different planes have in common: a segment, or a point where both ends are the same.
@@ -112,8 +113,7 @@ struct Section {
 impl Finder {
     /// Records what triangles `t` and `s` have in common.
     fn examine(&mut self, scene: &mut Scene<'_>, t: u32, s: u32) {
-        let plane_t = scene.own_plane(t);
-        let sides_s = sides(scene, &plane_t, t, s);
+        let sides_s = sides(scene, t, s);
         if all_on_one_side(sides_s) {
             return;
         }
@@ -123,11 +123,11 @@ impl Finder {
             }
             return;
         }
-        let plane_s = scene.own_plane(s);
-        let sides_t = sides(scene, &plane_s, s, t);
+        let sides_t = sides(scene, s, t);
         if all_on_one_side(sides_t) || meet_only_at_shared_corners(scene, [t, s], [sides_t, sides_s]) {
             return;
         }
+        let (plane_t, plane_s) = (scene.own_plane(t), scene.own_plane(s));
         let direction = Direction::of(&plane_t, &plane_s);
         let of_t = self.section(scene, t, sides_t, plane_t, &plane_s);
         let across = self.section(scene, s, sides_s, plane_s, &plane_t);
@@ -341,10 +341,47 @@ impl Contacts {
 }
 
 /// On which sides of the plane of one triangle the corners of another lie.
-fn sides(scene: &Scene<'_>, plane: &Plane, of: u32, triangle: u32) -> [i32; 3] {
+fn sides(scene: &mut Scene<'_>, of: u32, triangle: u32) -> [i32; 3] {
     let own = scene.corners[of as usize];
-    let side = |p: PointId| if own.contains(&p) { 0 } else { plane.side(scene.points(), p) };
-    scene.corners[triangle as usize].map(side)
+    let corners = scene.corners[triangle as usize];
+    let slope = Slope::new(scene.points(), own);
+    let quick = corners.map(|p| if own.contains(&p) { Some(0) } else { slope.side(scene.points().rounded(p)) });
+    if let [Some(a), Some(b), Some(c)] = quick {
+        return [a, b, c];
+    }
+    let plane = scene.own_plane(of);
+    [0, 1, 2].map(|i| quick[i].unwrap_or_else(|| plane.side(scene.points(), corners[i])))
+}
+
+/// A triangle's plane in doubles, good enough for points away from it.
+struct Slope {
+    corner: Vec3,
+    normal: Vec3,
+    /// Largest differences along the axes from the corner to the other two, with their errors.
+    reach: Vec3,
+}
+
+impl Slope {
+    fn new(points: &Points, corners: [PointId; 3]) -> Slope {
+        let [a, b, c] = corners.map(|p| points.rounded(p));
+        let (u, v) = (b - a, c - a);
+        Slope { corner: a, normal: u.cross(v), reach: u.abs().max(v.abs()) }
+    }
+
+    /// On which side of the plane a point lies, where doubles can tell.
+    fn side(&self, p: Vec3) -> Option<i32> {
+        // Coordinates are below 2^61 and rounded, so each carries an error of at most 2^7, and each difference of 2^9
+        // beside that of its own rounding. The determinant is a sum of six products of three differences, one along each
+        // axis; with all errors it lies between the products of what they are at most with and without them.
+        const ERROR: f64 = 512.0;
+        let w = p - self.corner;
+        let value = self.normal.dot(w);
+        let most = self.reach.max(w.abs());
+        let with_error = most + Vec3::splat(ERROR);
+        let spread = 6.0 * (with_error.x * with_error.y * with_error.z - most.x * most.y * most.z);
+        let bound = 2.0 * spread + 64.0 * f64::EPSILON * with_error.x * with_error.y * with_error.z;
+        if value.abs() > bound { Some(if value > 0.0 { 1 } else { -1 }) } else { None }
+    }
 }
 
 fn all_on_one_side(sides: [i32; 3]) -> bool {

@@ -34,7 +34,7 @@ mod world;
 pub use operand::Operand;
 pub use tree::{Op, Tree};
 
-use crate::mesh::{Defects, Solid};
+use crate::mesh::{Defects, Mesh, Solid, Topology};
 use crate::polygon::exact::Snapped;
 use body::Body;
 use std::fmt;
@@ -159,20 +159,48 @@ where
     T: Copy + Into<Operand<'a>>,
 {
     let operands: Vec<Operand<'a>> = operands.iter().map(|&operand| operand.into()).collect();
-    check(tree, &operands)?;
-    let (world, bodies) = enter(&operands, options.resolution);
+    if let Some(index) = tree.last_operand().filter(|&last| last >= operands.len()) {
+        return Err(BooleanError::NoSuchOperand { index, count: operands.len() });
+    }
+    let (world, bodies) = enter(&operands, options.resolution)?;
     let (world, body) = strategy::evaluate(world, bodies, tree, options.steps);
     Ok(world.solid_of(body))
 }
 
 /// Puts all operands on the finest lattice for them, or on one as coarse as `resolution` allows.
-fn enter<'a>(operands: &[Operand<'a>], resolution: f64) -> (World<'a>, Vec<Body>) {
+fn enter<'a>(operands: &[Operand<'a>], resolution: f64) -> Result<(World<'a>, Vec<Body>), BooleanError> {
+    let closed = operands.iter().enumerate().map(|(i, operand)| topology_of(i, operand));
+    let topologies: Vec<Topology> = closed.collect::<Result<_, _>>()?;
     let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
     let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let mut world = World::new(Snapped::new(largest, resolution));
+    world.places.points.reserve(operands.iter().map(|operand| operand.mesh.positions.len()).sum());
     world.labels = operands.iter().map(|operand| operand.labels).collect();
-    let bodies = (0..).zip(operands).map(|(i, operand)| Body::of_operand(&mut world, i, operand)).collect();
-    (world, bodies)
+    let enter = |(i, (operand, topology))| Body::of_operand(&mut world, i, operand, &topology);
+    let bodies = (0..).zip(operands.iter().zip(topologies)).map(enter).collect();
+    Ok((world, bodies))
+}
+
+/// The topology of an operand, which must bound a volume.
+fn topology_of(index: usize, operand: &Operand<'_>) -> Result<Topology, BooleanError> {
+    let Mesh { positions, triangles } = operand.mesh;
+    let is_sound = |&[a, b, c]: &[u32; 3]| {
+        a != b && b != c && c != a && [a, b, c].iter().all(|&v| (v as usize) < positions.len())
+    };
+    let simple = operand.checked || (triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()));
+    if simple {
+        let topology = Topology::new(triangles);
+        if operand.checked || topology.is_closed() {
+            return Ok(topology);
+        }
+    }
+    // What is not that simple may be closed all the same.
+    let defects = Defects::of(operand.mesh);
+    if defects.is_closed() {
+        Ok(Topology::new(triangles))
+    } else {
+        Err(BooleanError::NotClosed { operand: index, defects: Box::new(defects) })
+    }
 }
 
 /// Evaluates an expression of bodies in one arrangement.
@@ -206,17 +234,4 @@ pub fn symmetric_difference(a: &Solid, b: &Solid) -> Combined {
 
 fn pair(op: Op, a: &Solid, b: &Solid) -> Combined {
     evaluate(&Tree::flat(op, 2), &[a, b]).expect("solids are closed")
-}
-
-fn check(tree: &Tree, operands: &[Operand<'_>]) -> Result<(), BooleanError> {
-    if let Some(index) = tree.last_operand().filter(|&last| last >= operands.len()) {
-        return Err(BooleanError::NoSuchOperand { index, count: operands.len() });
-    }
-    for (index, operand) in operands.iter().enumerate().filter(|(_, operand)| !operand.checked) {
-        let defects = Defects::of(operand.mesh);
-        if !defects.is_closed() {
-            return Err(BooleanError::NotClosed { operand: index, defects: Box::new(defects) });
-        }
-    }
-    Ok(())
 }

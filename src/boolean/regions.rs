@@ -3,7 +3,7 @@
 use super::carriers::{Carrier, Carriers};
 use super::ray::{Anchor, RayCaster};
 use super::scene::Scene;
-use super::tree::Tree;
+use super::tree::{Judge, Tree};
 use super::world::NONE;
 use crate::numeric::DisjointSets;
 use crate::polygon::exact::{Boundary, Plane, PointId, Points, triangulate};
@@ -71,7 +71,8 @@ pub(super) fn classify(scene: &Scene<'_>, carriers: &Carriers, tree: &Tree) -> R
     let (region_of_side, region_count) = join_regions(&fins, &edges, patches.cell_count);
     let links = links(scene, carriers, &patches, &region_of_side);
     let winding = propagate(scene, carriers, &patches, &links, region_count as usize);
-    let inside: Vec<bool> = winding.iter().map(|winding| tree.holds(winding)).collect();
+    let mut judge = Judge::new(tree, scene.members.len());
+    let inside: Vec<bool> = winding.iter().map(|winding| judge.holds(winding)).collect();
     let inside = (0..patches.cell_count as usize)
         .map(|cell| [2 * cell, 2 * cell + 1].map(|side| inside[region_of_side[side] as usize]))
         .collect();

@@ -14,6 +14,7 @@ use crate::spatial::Bvh;
 
 /// Evaluates an expression of bodies.
 pub(super) fn evaluate<'a>(world: World<'a>, bodies: Vec<Body>, tree: &Tree, steps: Steps) -> (World<'a>, Body) {
+    let tree = &tree.flattened();
     let mut uses = vec![0_u32; bodies.len()];
     tree.leaves().into_iter().for_each(|(leaf, times)| uses[leaf] = times);
     let bodies = bodies.into_iter().map(Some).collect();
@@ -105,17 +106,27 @@ impl Kitchen<'_> {
         let boxes: Vec<Aabb> = bodies.iter().map(|body| body.bounds).collect();
         let bvh = Bvh::new(&boxes);
         let (mut met, mut all) = (0.0, 0.0);
-        for body in bodies.iter().filter(|body| !body.is_empty()) {
+        for (own, body) in (0_u32..).zip(bodies).filter(|(_, body)| !body.is_empty()) {
             let step = body.len().div_ceil(SAMPLES);
             let weight = body.len() as f64 / body.len().div_ceil(step) as f64;
             for corners in body.corners.iter().step_by(step) {
-                bvh.touching(&boxes, Aabb::of(corners.map(|p| points.rounded(p))), |_| met += weight);
+                let triangle = Aabb::of(corners.map(|p| points.rounded(p)));
+                bvh.touching(&boxes, triangle, |other| {
+                    // Bodies that are just flush bury nothing.
+                    if other != own && overlap(triangle, boxes[other as usize]) {
+                        met += weight;
+                    }
+                });
             }
             all += body.len() as f64;
         }
-        // Each triangle meets its own body.
-        met <= (1.0 + SHALLOW) * all
+        met <= SHALLOW * all
     }
+}
+
+/// Whether boxes that may be flat have more in common than their borders.
+fn overlap(a: Aabb, b: Aabb) -> bool {
+    a.min.cmplt(b.max).all() && b.min.cmplt(a.max).all()
 }
 
 /// Takes out the half of the bodies that lies further along the axis on which they are most spread.

@@ -122,8 +122,8 @@ impl Plane {
     /// Sign of one component of `self.normal x other.normal`.
     pub fn cross_sign(&self, other: &Plane, axis: usize) -> i32 {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let left = self.normal[u] as f64 * other.normal[v] as f64;
-        let right = self.normal[v] as f64 * other.normal[u] as f64;
+        let left = self.rounded[u] * other.rounded[v];
+        let right = self.rounded[v] * other.rounded[u];
         let bound = FILTER * (left.abs() + right.abs());
         if (left - right).abs() > bound {
             return if left > right { 1 } else { -1 };
@@ -208,8 +208,8 @@ impl Points {
     fn exact_side(&self, plane: &Plane, point: PointId) -> i32 {
         match self.fraction(point) {
             Ok(site) => plane.at_site(site).signum(),
-            Err((numerators, denominator)) => {
-                let value: PlaneAtPoint = plane.at_fraction(numerators, denominator);
+            Err(fraction) => {
+                let value: PlaneAtPoint = plane.at_fraction(&fraction.numerators, &fraction.denominator);
                 value.signum()
             }
         }
@@ -220,14 +220,17 @@ fn difference(a: Site, b: Site) -> [i128; 3] {
     [0, 1, 2].map(|i| i128::from(a[i]) - i128::from(b[i]))
 }
 
+/// The product in two halves, each of which fits: normals have at most 123 bits, coordinates 60.
 fn dot(normal: &[i128; 3], site: Site) -> Offset {
-    let mut sum = Offset::ZERO;
+    let (mut high, mut low) = (0_i128, 0_i128);
     for (n, c) in normal.iter().zip(site) {
-        if *n != 0 && c != 0 {
-            sum = sum.plus(&Wide::<2>::from(*n).times::<1, 3>(&Wide::from(c)));
-        }
+        let c = i128::from(c);
+        high += (n >> 64) * c;
+        low += i128::from(*n as u64) * c;
     }
-    sum
+    // high 2^64 + low, with the carry of the lower half.
+    let high = high + (low >> 64);
+    Wide::from_halves(high, low as u64)
 }
 
 /// A normal along an axis cut down to length one: axis-parallel faces are common, and small numbers are fast.
