@@ -1,8 +1,7 @@
 //! Fits, simplified paths, offsets and strokes against dense measurements of what they stand for.
 
 use ogee::curve::{
-    Arc, Bernstein, Continuity, Cubic, CurveError, Path, Piece, Ray, Side, Source, Spline, Subpath, fit, nearest,
-    simplify,
+    Arc, Bernstein, Continuity, Cubic, Path, Ray, Side, Source, Spline, Stroke, Subpath, Winding, fit, nearest, stroke, winding,
 };
 use ogee::math::{Vec2, cos, sin};
 
@@ -60,4 +59,110 @@ fn a_wave_is_followed_from_both_sides() {
         assert_eq!(curve.eval(0.0), Vec2::ZERO);
     }
     println!("{counts:?}");
+}
+
+fn cubic(points: [(f64, f64); 4]) -> Cubic<Vec2> {
+    Cubic::new(points.map(Vec2::from)).unwrap()
+}
+
+/// The stability cases, of size about 100.
+fn hard_cases() -> Vec<(&'static str, Path)> {
+    let one = |points: [(f64, f64); 4]| Path {
+        subpaths: vec![Subpath::open(vec![cubic(points).into()]).unwrap()],
+    };
+    let closed = |points: [(f64, f64); 4]| Path {
+        subpaths: vec![Subpath::closed(vec![cubic(points).into()]).unwrap()],
+    };
+    let polyline = |points: &[(f64, f64)], closed: bool| {
+        let points: Vec<Vec2> = points.iter().copied().map(Vec2::from).collect();
+        Path { subpaths: vec![Subpath::polyline(&points, closed).unwrap()] }
+    };
+    vec![
+        ("arch", one([(0.0, 0.0), (30.0, 60.0), (70.0, 60.0), (100.0, 0.0)])),
+        ("cusp", one([(0.0, 0.0), (100.0, 100.0), (0.0, 100.0), (100.0, 0.0)])),
+        ("near cusp", one([(0.0, 0.0), (100.0, 100.0), (1e-6, 100.0), (100.0, 0.0)])),
+        ("nearer cusp", one([(0.0, 0.0), (100.0, 100.0), (1e-13, 100.0), (100.0, 0.0)])),
+        ("near cusp, looped", one([(0.0, 0.0), (100.0, 100.0), (-1e-9, 100.0), (100.0, 0.0)])),
+        ("loop", one([(0.0, 0.0), (150.0, 100.0), (-50.0, 100.0), (100.0, 0.0)])),
+        ("S", one([(0.0, 0.0), (100.0, 0.0), (0.0, 100.0), (100.0, 100.0)])),
+        ("line turning back", one([(0.0, 0.0), (200.0, 0.0), (-100.0, 0.0), (100.0, 0.0)])),
+        ("slanted line turning back", one([(0.0, 0.0), (200.0, 66.6), (-100.0, -33.3), (100.0, 33.3)])),
+        ("first point doubled", one([(0.0, 0.0), (0.0, 0.0), (50.0, 100.0), (100.0, 0.0)])),
+        ("both ends doubled", one([(0.0, 0.0), (0.0, 0.0), (100.0, 50.0), (100.0, 50.0)])),
+        ("first point tripled", one([(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (100.0, 50.0)])),
+        ("all points equal", one([(5.0, 5.0); 4])),
+        ("tight bend", one([(0.0, 0.0), (100.0, 3.0), (100.0, 3.0), (0.0, 6.0)])),
+        ("drop", closed([(0.0, 0.0), (120.0, 100.0), (-120.0, 100.0), (0.0, 0.0)])),
+        ("zigzag", polyline(&[(0.0, 0.0), (50.0, 5.0), (2.0, 10.0), (60.0, 60.0), (60.0, 60.0), (61.0, 0.0)], false)),
+        ("triangle", polyline(&[(0.0, 0.0), (60.0, 0.0), (30.0, 50.0)], true)),
+        ("there and back", polyline(&[(0.0, 0.0), (50.0, 0.0), (0.0, 0.0)], false)),
+        ("small steps", polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (1.5, 0.2), (40.0, 0.0)], false)),
+        ("circle", Path {
+            subpaths: vec![Subpath::closed(vec![Arc::ellipse(Vec2::ONE, Vec2::splat(20.0)).unwrap().into()]).unwrap()],
+        }),
+        ("ellipse", Path {
+            subpaths: vec![
+                Subpath::closed(vec![Arc::ellipse(Vec2::ONE, Vec2::new(50.0, 4.0)).unwrap().into()]).unwrap(),
+            ],
+        }),
+    ]
+}
+
+/// Numbers that look random, the same in each run.
+fn noise(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    ((*state >> 33) as f64) / ((1_u64 << 31) as f64)
+}
+
+/// A path of which the arcs are finely cubic.
+fn pieces_of(path: &Path) -> Vec<Cubic<Vec2>> {
+    path.subpaths.iter().flat_map(|subpath| subpath.cubics(1e-9).unwrap()).collect()
+}
+
+fn distance_to(cubics: &[Cubic<Vec2>], point: Vec2) -> f64 {
+    cubics.iter().map(|c| nearest(c, point).unwrap().distance.value).fold(f64::INFINITY, f64::min)
+}
+
+/// How often a path of closed subpaths goes around a point; `None` on the path.
+fn windings(path: &Path, point: Vec2) -> Option<i32> {
+    let mut sum = 0;
+    for subpath in &path.subpaths {
+        let spline = Spline::from_pieces(&subpath.cubics(1e-9).unwrap()).unwrap().into_closed().unwrap();
+        match winding(&spline, point).unwrap() {
+            Winding::Around(times) => sum += times,
+            Winding::OnPath => return None,
+        }
+    }
+    Some(sum)
+}
+
+#[test]
+fn a_round_stroke_is_what_is_near() {
+    let mut state = 1;
+    for (name, path) in hard_cases() {
+        let cubics = pieces_of(&path);
+        for width in [0.5, 12.0, 90.0] {
+            let tolerance = 1e-3;
+            let outline = stroke(&path, &Stroke::round(width), tolerance).unwrap();
+            assert!(outline.error <= tolerance);
+            let count = outline.curve.pieces().count();
+            let bounds = outline.curve.bounding_box().unwrap();
+            let margin = Vec2::splat(1.0);
+            let (low, size) = (bounds.min - margin, bounds.max - bounds.min + 2.0 * margin);
+            for _ in 0..400 {
+                let point = low + Vec2::new(noise(&mut state), noise(&mut state)) * size;
+                let far = distance_to(&cubics, point) - 0.5 * width;
+                if far.abs() <= tolerance {
+                    continue;
+                }
+                let times = windings(&outline.curve, point);
+                assert!(
+                    times.is_none() || (times != Some(0)) == (far < 0.0),
+                    "{name}, width {width}: {point} is {far} outside, {times:?} around, {count} pieces"
+                );
+                assert!(times.is_none_or(|times| times >= 0), "{name}: {times:?}");
+            }
+            println!("{name} {width}: {count} pieces");
+        }
+    }
 }

@@ -1,13 +1,10 @@
 //! The same picture with fewer pieces.
 
-use super::fit::{Fitted, Proxy, Run};
+use super::fit::{Fitted, Proxy, Run, SHARE};
 use super::frame::UnitFrame;
 use super::strand::{Element, Strand, angle_between};
 use super::{Cubic, CurveError, Line, Path, Piece, Subpath};
 use crate::math::Vec2;
-
-/// The share of the tolerance that goes into cubics for arcs.
-const ARCS: f64 = 1.0 / 16.0;
 
 /// A path of fewer pieces within `tolerance` of a path, in model units: between corners nearly as few cubics as can be
 /// shown to be within it ([`super::fit`] says how), smooth (G1) where they meet.
@@ -44,7 +41,7 @@ pub fn simplify(path: &Path, tolerance: f64, corner: f64) -> Result<Fitted<Path>
     let limit = frame.tolerance(tolerance)?;
     let (mut simple, mut error) = (Path::default(), 0.0);
     for subpath in &path.subpaths {
-        let strand = Strand::new(subpath, &frame, ARCS * tolerance)?;
+        let strand = Strand::new(subpath, &frame, SHARE * tolerance, 0.0)?;
         let mut pieces = Vec::new();
         for smooth in smooth_parts(&strand, corner) {
             error = follow(smooth, &frame, limit, &mut pieces)?.max(error);

@@ -66,12 +66,23 @@ impl Run {
     }
 
     /// The first point; the origin for an empty run.
-    pub(super) fn start(&self) -> Vec2 {
+    pub(in crate::curve) fn start(&self) -> Vec2 {
         self.pieces.first().map_or(Vec2::ZERO, |piece| piece.points[0])
     }
 
     pub(in crate::curve) fn is_empty(&self) -> bool {
         self.pieces.is_empty()
+    }
+
+    /// Unit tangent at the start.
+    pub(in crate::curve) fn first_tangent(&self) -> Vec2 {
+        self.tangents[0]
+    }
+
+    /// Adds a run that starts where this one ends, in its direction.
+    pub(in crate::curve) fn append(&mut self, other: Run) {
+        self.pieces.extend(other.pieces);
+        self.tangents.extend(other.tangents.into_iter().skip(1));
     }
 
     /// Unit tangent at the end.
@@ -90,9 +101,11 @@ impl Run {
     /// From each point the longest part that can be shown to be within the limit is taken. Parts within one piece are
     /// exact, so that there is always one.
     pub(in crate::curve) fn fitted(&self, limit: f64) -> Vec<Proxy> {
-        let (mut fitted, mut at, mut hint) = (Vec::new(), 0.0, 1.0);
+        let (mut fitted, mut at, mut hint) = (Vec::<Proxy>::new(), 0.0, 1.0);
         while at < self.pieces.len() as f64 {
-            let (to, proxy) = self.longest(at, hint, limit);
+            let (to, mut proxy) = self.longest(at, hint, limit);
+            // Equal but for rounding, where one is a part of a piece and the other is not.
+            proxy.points[0] = fitted.last().map_or(proxy.points[0], |last| last.points[3]);
             fitted.push(proxy);
             hint = to - at;
             at = to;

@@ -131,8 +131,8 @@ fn proxies<S: Source>(source: &S, from: f64, to: f64, tolerance: f64) -> Result<
     let mut run = Run::starting(start.tangent);
     let mut stuck = None;
     let least = (to - from) * NARROWEST;
-    follow(source, [from, to], tolerance, least, &mut |step| match step {
-        Step::Proxy(proxy, tangent) => run.push(proxy, tangent),
+    follow(source, [from, to], tolerance, &|from, to| to - from <= least, &mut |step| match step {
+        Step::Proxy { proxy, tangent, .. } => run.push(proxy, tangent),
         Step::Stuck { deviation, .. } => stuck = stuck.or(Some(deviation)),
     });
     match stuck {
@@ -143,19 +143,19 @@ fn proxies<S: Source>(source: &S, from: f64, to: f64, tolerance: f64) -> Result<
 
 /// A step along a source.
 pub(in crate::curve) enum Step {
-    /// A cubic, and the unit tangent at its end.
-    Proxy(Proxy, Vec2),
-    /// A part too narrow to be cut further and still farther from its cubic than allowed.
+    /// A cubic up to a parameter, and the unit tangent there.
+    Proxy { proxy: Proxy, to: f64, tangent: Vec2 },
+    /// A part that is not cut further and still farther from its cubic than allowed.
     Stuck { from: f64, to: f64, deviation: f64 },
 }
 
 /// Walks a part of a source without breaks in cubics with its ends and end derivatives, halving until each is within
-/// the tolerance.
+/// the tolerance; parts for which `is_least` holds are not cut further.
 pub(in crate::curve) fn follow<S: Source>(
     source: &S,
     [from, to]: [f64; 2],
     tolerance: f64,
-    least: f64,
+    is_least: &impl Fn(f64, f64) -> bool,
     take: &mut impl FnMut(Step),
 ) {
     let (start, end) = (source.ray(from, Side::After), source.ray(to, Side::Before));
@@ -168,12 +168,12 @@ pub(in crate::curve) fn follow<S: Source>(
     ];
     let deviation = Cubic::new(points).map_or(f64::INFINITY, |cubic| source.deviation(from, to, &cubic));
     if deviation <= tolerance {
-        return take(Step::Proxy(Proxy { points, error: deviation }, end.tangent));
+        return take(Step::Proxy { proxy: Proxy { points, error: deviation }, to, tangent: end.tangent });
     }
     let middle = 0.5 * from + 0.5 * to;
-    if to - from <= least || middle <= from || middle >= to {
+    if is_least(from, to) || middle <= from || middle >= to {
         return take(Step::Stuck { from, to, deviation });
     }
-    follow(source, [from, middle], tolerance, least, take);
-    follow(source, [middle, to], tolerance, least, take);
+    follow(source, [from, middle], tolerance, is_least, take);
+    follow(source, [middle, to], tolerance, is_least, take);
 }
