@@ -1,9 +1,10 @@
 //! Fits, simplified paths, offsets and strokes against dense measurements of what they stand for.
 
 use ogee::curve::{
-    Arc, Bernstein, Continuity, Cubic, Path, Ray, Side, Source, Spline, Stroke, Subpath, Winding, fit, nearest, stroke, winding,
+    Arc, Bernstein, Cap, Continuity, Cubic, Curve, CurveError, Join, Path, Ray, Side, Source, Spline, Stroke,
+    Subpath, Winding, fit, nearest, offset, simplify, stroke, winding,
 };
-use ogee::math::{Vec2, cos, sin};
+use ogee::math::{Affine2, Vec2, cos, sin};
 
 /// y = sin x.
 struct Wave;
@@ -165,4 +166,126 @@ fn a_round_stroke_is_what_is_near() {
             println!("{name} {width}: {count} pieces");
         }
     }
+}
+
+/// A point of the parallel, computed from the path itself.
+fn parallel_point(curve: &Cubic<Vec2>, t: f64, distance: f64) -> Option<Vec2> {
+    let jet = curve.jet(t);
+    let tangent = jet.first.try_normalize()?;
+    (jet.first.length() > 1e-7).then(|| jet.point + tangent.perp() * distance)
+}
+
+#[test]
+fn a_parallel_is_at_its_distance_from_both_sides() {
+    for (name, path) in hard_cases() {
+        let cubics = pieces_of(&path);
+        for distance in [-60.0, -3.0, 0.25, 7.0, 40.0] {
+            for tolerance in [1e-2, 1e-5] {
+                let parallel = offset(&path, distance, Join::Round, tolerance).unwrap();
+                assert!(parallel.error <= tolerance);
+                let drawn = pieces_of(&parallel.curve);
+                for curve in &cubics {
+                    for k in 0..=60 {
+                        if let Some(p) = parallel_point(curve, f64::from(k) / 60.0, distance) {
+                            let off = distance_to(&drawn, p);
+                            assert!(off <= parallel.error + 1e-8, "{name} {distance}: {p} is {off} off");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn offsets_far_away_tiny_and_huge() {
+    let arch = [(0.0, 0.0), (30.0, 60.0), (70.0, 60.0), (100.0, 0.0)];
+    let plain = Path { subpaths: vec![Subpath::open(vec![cubic(arch).into()]).unwrap()] };
+    let counts = |path: &Path, scale: f64| {
+        let parallel = offset(path, 20.0 * scale, Join::Round, 1e-4 * scale).unwrap();
+        assert!(parallel.error <= 1e-4 * scale);
+        let outline = stroke(path, &Stroke::round(120.0 * scale), 1e-4 * scale).unwrap();
+        (parallel.curve.pieces().count(), outline.curve.pieces().count())
+    };
+    let expected = counts(&plain, 1.0);
+    // Powers of two make no difference at all.
+    for scale in [2.0_f64.powi(-40), 2.0_f64.powi(-900), 2.0_f64.powi(1000)] {
+        let scaled = plain.map(&Affine2::from_scale(Vec2::splat(scale))).unwrap();
+        assert_eq!(counts(&scaled, scale), expected, "{scale}");
+    }
+    let moved = plain.map(&Affine2::from_translation(Vec2::splat(1e8))).unwrap();
+    assert_eq!(counts(&moved, 1.0), expected);
+    let tiny = plain.map(&Affine2::from_scale(Vec2::splat(1e-12))).unwrap();
+    assert_eq!(counts(&tiny, 1e-12), expected);
+    let huge = plain.map(&Affine2::from_scale(Vec2::splat(1e306))).unwrap();
+    assert_eq!(counts(&huge, 1e304).0 > 0, true);
+    // Half of the width beyond the range of numbers.
+    let error = stroke(&huge, &Stroke::round(1.7e308), 1e300).unwrap_err();
+    assert_eq!(error, CurveError::NotFinite { index: 0 });
+}
+
+#[test]
+fn wrong_input_is_named() {
+    let line = Path { subpaths: vec![Subpath::polyline(&[Vec2::ZERO, Vec2::X], false).unwrap()] };
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let same = |error: CurveError| matches!(error, CurveError::Tolerance { .. });
+        assert!(same(simplify(&line, tolerance, 0.1).unwrap_err()));
+        assert!(same(offset(&line, 1.0, Join::Bevel, tolerance).unwrap_err()));
+        assert!(same(stroke(&line, &Stroke::round(1.0), tolerance).unwrap_err()));
+        assert!(same(fit(&Wave, tolerance).unwrap_err()));
+    }
+    let fine = offset(&line, 1.0, Join::Bevel, 1e-17).unwrap_err();
+    assert!(matches!(fine, CurveError::ToleranceTooFine { value: 1e-17, finest } if finest < 1e-12), "{fine}");
+    assert!(matches!(fit(&Wave, 1e-13), Err(CurveError::ToleranceTooFine { .. })));
+    assert!(matches!(simplify(&line, 0.1, f64::NAN), Err(CurveError::Parameter { .. })));
+    assert_eq!(offset(&line, f64::INFINITY, Join::Bevel, 0.1), Err(CurveError::Distance { value: f64::INFINITY }));
+    assert_eq!(
+        offset(&line, 1.0, Join::Miter { limit: 0.5 }, 0.1),
+        Err(CurveError::Parameter { value: 0.5 })
+    );
+    for width in [0.0, -1.0, f64::INFINITY] {
+        assert_eq!(stroke(&line, &Stroke::round(width), 0.1), Err(CurveError::Distance { value: width }));
+    }
+    let dashed = |dashes: &[f64]| Stroke { dashes: dashes.to_vec(), ..Stroke::round(0.1) };
+    assert_eq!(stroke(&line, &dashed(&[1.0, -1.0]), 0.01), Err(CurveError::Dash { index: 1 }));
+    assert_eq!(stroke(&line, &dashed(&[0.0, 0.0]), 0.01), Err(CurveError::Dash { index: 1 }));
+    assert!(matches!(stroke(&line, &dashed(&[1e-9]), 0.01), Err(CurveError::TooManyDashes { .. })));
+    assert_eq!(stroke(&Path::default(), &Stroke::round(1.0), 0.1).unwrap().curve, Path::default());
+}
+
+#[test]
+fn joins_caps_and_dashes() {
+    let corner = Path {
+        subpaths: vec![Subpath::polyline(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)].map(Vec2::from), false).unwrap()],
+    };
+    let area = |join: Join, cap: Cap, dashes: &[f64]| {
+        let style = Stroke { width: 2.0, join, cap, dashes: dashes.to_vec(), phase: 0.0 };
+        let outline = stroke(&corner, &style, 1e-6).unwrap().curve;
+        (outline.area(), outline.subpaths.len())
+    };
+    let pi = std::f64::consts::PI;
+    // The inner side goes through the corner, so that the square there counts twice.
+    let strips = 40.0;
+    let near = |(area, count): (f64, usize), want: f64, parts: usize| {
+        assert!((area - want).abs() < 1e-4 && count == parts, "{area} for {want}, {count} parts");
+    };
+    near(area(Join::Miter { limit: 4.0 }, Cap::Butt, &[]), strips + 1.0, 1);
+    near(area(Join::Miter { limit: 1.2 }, Cap::Butt, &[]), strips + 0.5, 1);
+    near(area(Join::Bevel, Cap::Butt, &[]), strips + 0.5, 1);
+    near(area(Join::Round, Cap::Butt, &[]), strips + pi / 4.0, 1);
+    near(area(Join::Bevel, Cap::Square, &[]), strips + 4.5, 1);
+    near(area(Join::Bevel, Cap::Round, &[]), strips + 0.5 + pi, 1);
+    // Three dashes of 4 with gaps of 4; the second one is cut by the corner.
+    near(area(Join::Bevel, Cap::Butt, &[4.0]), 24.5, 3);
+    near(area(Join::Bevel, Cap::Butt, &[4.0, 1.0]), 32.0, 4);
+    // Dots.
+    near(area(Join::Bevel, Cap::Round, &[0.0, 5.0]), 4.0 * pi, 4);
+    near(area(Join::Bevel, Cap::Square, &[0.0, 5.0]), 16.0, 4);
+    near(area(Join::Bevel, Cap::Butt, &[0.0, 5.0]), 0.0, 0);
+    // A closed square whose first dash prolongs its last.
+    let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(Vec2::from);
+    let square = Path { subpaths: vec![Subpath::polyline(&square, true).unwrap()] };
+    let style = Stroke { dashes: vec![10.0], phase: 5.0, join: Join::Bevel, cap: Cap::Butt, ..Stroke::round(2.0) };
+    let outline = stroke(&square, &style, 1e-6).unwrap().curve;
+    near((outline.area(), outline.subpaths.len()), 41.0, 2);
 }

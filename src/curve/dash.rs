@@ -72,7 +72,8 @@ impl Pattern {
         }
         let mut into = phase.rem_euclid(period);
         let mut index = 0;
-        while index + 1 < lengths.len() && into >= lengths[index] {
+        // At 0 a dash of no length is still to come.
+        while index + 1 < lengths.len() && into > 0.0 && into >= lengths[index] {
             into -= lengths[index];
             index += 1;
         }

@@ -13,6 +13,16 @@ use crate::math::Vec2;
 /// With S' = w D as in [`Parallel`] the radius of curvature is w |D|^3 / (D x D').
 pub(super) struct Evolute<'a>(pub(super) &'a Parallel);
 
+impl Evolute<'_> {
+    /// The chord between two parameters, if the part between is within a distance of it.
+    pub(super) fn chord(&self, [from, to]: [f64; 2], distance: f64) -> Option<[Vec2; 4]> {
+        let [a, b] = [from, to].map(|t| self.ray(t, Side::After).point);
+        let points = [a, a + (b - a) / 3.0, b - (b - a) / 3.0, b];
+        let chord = Cubic::new(points).ok()?;
+        (self.deviation(from, to, &chord) <= distance).then_some(points)
+    }
+}
+
 impl Source for Evolute<'_> {
     fn domain(&self) -> [f64; 2] {
         [0.0, 1.0]

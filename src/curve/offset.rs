@@ -2,7 +2,7 @@
 
 use super::bernstein::{inner_product, product_with, sign_changes};
 use super::fit::{Fitted, Ray, SHARE, Side, Source};
-use super::frame::UnitFrame;
+use super::frame::{ROUNDING, UnitFrame};
 use super::pen::{Join, Pen, check_join};
 use super::strand::Strand;
 use super::subdivide::{derivative, restrict};
@@ -152,18 +152,18 @@ impl Parallel {
 
     /// Where the parallel turns back, ascending and within (0, 1): where the radius of curvature is the distance.
     pub(super) fn cusps(&self) -> Vec<f64> {
-        let mut cusps = Vec::new();
-        self.cusps_between(0.0, 1.0, &mut cusps);
-        // Neighbouring parts in which nothing can be told hold one.
-        cusps.dedup_by(|b, a| *b - *a <= 4.0 * NARROW);
-        cusps.retain(|&t| t > 0.0 && t < 1.0);
-        cusps
+        let mut found = Vec::new();
+        self.cusps_between(0.0, 1.0, &mut found);
+        // Neighbouring parts in which nothing can be told are one.
+        found.dedup_by(|b, a| b[0] == a[1] && { a[1] = b[1]; true });
+        let cusps = found.into_iter().map(|[low, high]| bracketed(|t| self.pace(t), low, high));
+        cusps.filter(|&t| t > 0.0 && t < 1.0).collect()
     }
 
     /// Isolates the zeros of w |D|^3 - d D x D' by its square with the other sign in the middle: Bernstein coefficients
     /// of degree 16, computed anew on each part from the derivative there, so that they are right also where that is
     /// small.
-    fn cusps_between(&self, from: f64, to: f64, cusps: &mut Vec<f64>) {
+    fn cusps_between(&self, from: f64, to: f64, found: &mut Vec<[f64; 2]>) {
         let (_, factor, direction) = self.part(from, to);
         let scale = self.distance / (to - from);
         let turn = product_with(&direction, &derivative(&direction, 1), |a, b| a.perp_dot(b) * scale);
@@ -182,14 +182,16 @@ impl Parallel {
         }
         let is_sure = [misfit[0], misfit[16]].iter().all(|c| c.abs() > error);
         if is_sure && turn.iter().all(|&c| c > 0.0) && sign_changes(&misfit) == 1 {
-            return cusps.push(bracketed(|t| self.pace(t), from, to));
+            let cusp = bracketed(|t| self.pace(t), from, to);
+            return found.push([cusp; 2]);
+        }
+        let is_point = to - from <= NARROW || self.length_bound(from, to) <= ROUNDING;
+        if is_point || misfit.iter().all(|c| c.abs() <= 16.0 * error) {
+            return found.push([from, to]);
         }
         let middle = 0.5 * from + 0.5 * to;
-        if to - from <= NARROW {
-            return cusps.push(middle);
-        }
-        self.cusps_between(from, middle, cusps);
-        self.cusps_between(middle, to, cusps);
+        self.cusps_between(from, middle, found);
+        self.cusps_between(middle, to, found);
     }
 }
 

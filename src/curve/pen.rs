@@ -48,6 +48,8 @@ pub(super) struct Pen {
     error: f64,
     /// What goes on without a corner and is not yet in the chain.
     run: Run,
+    /// For a run backward that must be covered, the evolute beside it.
+    evolute: Option<Vec<[Vec2; 4]>>,
     failure: Option<CurveError>,
 }
 
@@ -75,6 +77,31 @@ impl Chain {
             _ => self.at = Some(to),
         }
     }
+
+    /// A straight line, or where its ends are as near as `near` the last cubic moved to the end.
+    fn reach(&mut self, to: Vec2, near: f64) {
+        match (self.at, self.cubics.last_mut()) {
+            (Some(at), Some(last)) if (at - to).length() <= near => {
+                last[3] = to;
+                self.at = Some(to);
+            }
+            _ => self.line_to(to),
+        }
+    }
+
+    /// Cubics that start where the chain ends, as nearly as `near`; else there is a line between. Those that do not
+    /// leave that place are left out.
+    fn extend(&mut self, cubics: &[[Vec2; 4]], near: f64) {
+        for &points in cubics {
+            let mut points = points;
+            match self.at {
+                Some(at) if points.iter().all(|&p| (at - p).length() <= near) => continue,
+                Some(at) if (at - points[0]).length() <= near => points[0] = at,
+                _ => self.line_to(points[0]),
+            }
+            self.push(points);
+        }
+    }
 }
 
 /// A part of a curve: smooth, or a corner since it is shorter than [`POINT`].
@@ -90,7 +117,7 @@ impl Pen {
     /// A pen that draws at a distance to the left of strands.
     pub(super) fn new(distance: f64, join: Join, limit: f64) -> Pen {
         let (chain, run) = (Chain::default(), Run::default());
-        Pen { distance, join, limit, covers: false, chain, error: 0.0, run, failure: None }
+        Pen { distance, join, limit, covers: false, chain, error: 0.0, run, evolute: None, failure: None }
     }
 
     /// The same pen for outlines of regions.
@@ -158,8 +185,11 @@ impl Pen {
             let stretch = whole.between(from, to);
             for leg in self.legs(&stretch, &stretch, [from, to]) {
                 match leg {
-                    Leg::Run(run, range) if self.covers && stretch.is_folded() => self.fold(&stretch, run, range),
-                    Leg::Run(run, _) => self.append(run),
+                    Leg::Run(run, range) => {
+                        let folded = self.covers && stretch.is_folded();
+                        let evolute = folded.then(|| self.evolute(&stretch, range));
+                        self.append(run, evolute);
+                    }
                     Leg::Turn(range) => self.turn(&stretch, range),
                 }
             }
@@ -172,47 +202,69 @@ impl Pen {
         let point = POINT * self.limit;
         let is_least = |from: f64, to: f64| stretch.length_bound(from, to) <= point;
         let (mut legs, mut at) = (Vec::new(), range[0]);
-        follow(source, range, SHARE * self.limit, &is_least, &mut |step| match step {
-            Step::Proxy { proxy, to, tangent } => {
-                if !matches!(legs.last(), Some(Leg::Run(..))) {
-                    legs.push(Leg::Run(Run::starting(source.ray(at, Side::After).tangent), [at, at]));
+        follow(source, range, SHARE * self.limit, &is_least, &mut |step| {
+            match step {
+                Step::Proxy { proxy, to, tangent } => {
+                    if !matches!(legs.last(), Some(Leg::Run(..))) {
+                        legs.push(Leg::Run(Run::starting(source.ray(at, Side::After).tangent), [at, at]));
+                    }
+                    if let Some(Leg::Run(run, range)) = legs.last_mut() {
+                        run.push(proxy, tangent);
+                        range[1] = to;
+                    }
+                    at = to;
                 }
-                if let Some(Leg::Run(run, range)) = legs.last_mut() {
-                    run.push(proxy, tangent);
-                    range[1] = to;
+                Step::Stuck { from, to, .. } => {
+                    match legs.last_mut() {
+                        Some(Leg::Turn(range)) if stretch.length_bound(range[0], to) <= point => range[1] = to,
+                        _ => legs.push(Leg::Turn([from, to])),
+                    }
+                    at = to;
                 }
-                at = to;
             }
-            Step::Stuck { from, to, .. } => {
-                match legs.last_mut() {
-                    Some(Leg::Turn(range)) if stretch.length_bound(range[0], to) <= point => range[1] = to,
-                    _ => legs.push(Leg::Turn([from, to])),
-                }
-                at = to;
-            }
+            true
         });
         legs
     }
 
     /// Goes on with the present run where it leads there in the same direction, else starts another.
-    fn append(&mut self, run: Run) {
+    fn append(&mut self, run: Run, evolute: Option<Vec<[Vec2; 4]>>) {
         let goes_on = !self.run.is_empty()
             && self.run.end() == run.start()
             && self.run.last_tangent() == run.first_tangent();
-        if goes_on {
-            self.run.append(run);
-        } else {
-            self.flush();
-            self.chain.line_to(run.start());
-            self.run = run;
+        match (&mut self.evolute, evolute) {
+            (None, None) if goes_on => self.run.append(run),
+            (Some(before), Some(more)) if goes_on => {
+                before.extend(more);
+                self.run.append(run);
+            }
+            (_, evolute) => {
+                self.flush();
+                self.chain.line_to(run.start());
+                (self.run, self.evolute) = (run, evolute);
+            }
         }
     }
 
     /// Draws the present run with few cubics.
+    ///
+    /// Where it runs backward: up to the evolute normals run through points one way, beyond it the other way. So the
+    /// outline goes along the evolute, back along the run, and along the evolute again: around both parts in the same
+    /// sense.
     fn flush(&mut self) {
         let run = std::mem::take(&mut self.run);
-        for points in self.fitted(&run) {
-            self.chain.push(points);
+        let cubics = self.fitted(&run);
+        let Some(evolute) = self.evolute.take() else {
+            return self.chain.extend(&cubics, 0.0);
+        };
+        let near = SHARE * self.limit;
+        for pass in 0..2 {
+            self.chain.extend(&evolute, near);
+            self.chain.reach(run.end(), near);
+            if pass == 0 {
+                let back: Vec<[Vec2; 4]> = cubics.iter().rev().map(|&[a, b, c, d]| [d, c, b, a]).collect();
+                self.chain.extend(&back, 0.0);
+            }
         }
     }
 
@@ -222,58 +274,34 @@ impl Pen {
         fitted.into_iter().map(|proxy| proxy.points).collect()
     }
 
-    /// A part so short, and that turns so fast, that it is a corner.
+    /// A part so short, and that turns so fast, that it is a corner. Its parallel is an arc on either side.
     fn turn(&mut self, stretch: &Parallel, [from, to]: [f64; 2]) {
         let [a, b] = [from, to].map(|t| stretch.center(t));
-        self.corner(a, stretch.tangent(from), stretch.tangent(to), Join::Round);
+        let [arriving, leaving] = [from, to].map(|t| stretch.tangent(t));
+        let inner = arriving.perp_dot(leaving) * self.distance > 0.0;
+        if self.covers || !inner {
+            self.corner(a, arriving, leaving, Join::Round);
+        } else {
+            self.flush();
+            self.chain.line_to(a + arriving.perp() * self.distance);
+            self.arc(a, arriving, leaving, -1.0);
+        }
         self.error = self.error.max((b - a).length());
         self.chain.line_to(stretch.ray(to, Side::Before).point);
     }
 
-    /// Draws a parallel that runs backward, for an outline.
-    ///
-    /// Up to the evolute normals run through points one way, beyond it the other way. So the outline goes along the
-    /// evolute, back along the parallel, and along the evolute again: around both parts in the same sense.
-    fn fold(&mut self, stretch: &Parallel, run: Run, range: [f64; 2]) {
-        self.flush();
-        self.chain.line_to(run.start());
-        let forth = self.evolute(stretch, [run.start(), run.end()], range);
-        let back = self.fitted(&run);
-        for points in &forth {
-            self.chain.push(*points);
+    /// The evolute between two parameters; a straight line where it is one as far as the tolerance can tell.
+    fn evolute(&mut self, stretch: &Parallel, range: [f64; 2]) -> Vec<[Vec2; 4]> {
+        let evolute = Evolute(stretch);
+        if let Some(chord) = evolute.chord(range, self.limit) {
+            return vec![chord];
         }
-        for &[a, b, c, d] in back.iter().rev() {
-            self.chain.push([d, c, b, a]);
-        }
-        for points in forth {
-            self.chain.push(points);
-        }
-    }
-
-    /// The evolute between two parameters, with lines from and to the ends of the parallel where they are not its own.
-    fn evolute(&mut self, stretch: &Parallel, ends: [Vec2; 2], range: [f64; 2]) -> Vec<[Vec2; 4]> {
-        let mut chain = Chain { at: Some(ends[0]), cubics: Vec::new() };
-        let is_near = |a: Vec2, b: Vec2| (a - b).length() <= SHARE * self.limit;
-        let snap = |chain: &mut Chain, to: Vec2| match chain.cubics.last_mut() {
-            Some(last) if is_near(last[3], to) => {
-                last[3] = to;
-                chain.at = Some(to);
-            }
-            _ => chain.line_to(to),
-        };
-        for leg in self.legs(&Evolute(stretch), stretch, range) {
-            let Leg::Run(run, _) = leg else { continue };
-            if chain.at.is_some_and(|at| !is_near(at, run.start())) {
-                chain.line_to(run.start());
-            }
-            for proxy in run.fitted((1.0 - SHARE) * self.limit) {
-                let mut points = proxy.points;
-                points[0] = chain.at.unwrap_or(points[0]);
-                chain.push(points);
-            }
-        }
-        snap(&mut chain, ends[1]);
-        chain.cubics
+        let limit = (1.0 - SHARE) * self.limit;
+        let runs = self.legs(&evolute, stretch, range).into_iter().filter_map(|leg| match leg {
+            Leg::Run(run, _) => Some(run),
+            Leg::Turn(_) => None,
+        });
+        runs.flat_map(|run| run.fitted(limit)).map(|proxy| proxy.points).collect()
     }
 
     /// Draws around a corner of the strand from one tangent to the other.
@@ -293,7 +321,7 @@ impl Pen {
             self.chain.line_to(at);
         } else if !inner {
             match join {
-                Join::Round => self.arc(at, from, to),
+                Join::Round => self.arc(at, from, to, 1.0),
                 Join::Miter { limit } if 2.0 <= limit * limit * (1.0 + ahead) => {
                     self.chain.line_to(at + (from.perp() + to.perp()) * (self.distance / (1.0 + ahead)));
                 }
@@ -303,9 +331,9 @@ impl Pen {
         self.chain.line_to(end);
     }
 
-    /// An arc on the outer side of a corner.
-    fn arc(&mut self, at: Vec2, from: Vec2, to: Vec2) {
-        let axes = [from.perp() * self.distance, from * self.distance.abs()];
+    /// An arc around a corner: for `sense` 1 through the direction of `from`, as on the outer side, for -1 against it.
+    fn arc(&mut self, at: Vec2, from: Vec2, to: Vec2, sense: f64) {
+        let axes = [from.perp() * self.distance, from * (sense * self.distance.abs())];
         let tolerance = 0.5 * self.limit;
         let arc = Arc::new(at, axes, 0.0, angle_between(from, to)).and_then(|arc| arc.cubics(tolerance));
         let mut cubics = match arc {
@@ -334,7 +362,7 @@ impl Pen {
         self.chain.line_to(at + side);
         match cap {
             Cap::Butt => {}
-            Cap::Round => self.arc(at, tangent, -tangent),
+            Cap::Round => self.arc(at, tangent, -tangent, 1.0),
             Cap::Square => {
                 let beyond = at + tangent * self.distance.abs();
                 self.chain.line_to(beyond + side);

@@ -131,9 +131,12 @@ fn proxies<S: Source>(source: &S, from: f64, to: f64, tolerance: f64) -> Result<
     let mut run = Run::starting(start.tangent);
     let mut stuck = None;
     let least = (to - from) * NARROWEST;
-    follow(source, [from, to], tolerance, &|from, to| to - from <= least, &mut |step| match step {
-        Step::Proxy { proxy, tangent, .. } => run.push(proxy, tangent),
-        Step::Stuck { deviation, .. } => stuck = stuck.or(Some(deviation)),
+    follow(source, [from, to], tolerance, &|from, to| to - from <= least, &mut |step| {
+        match step {
+            Step::Proxy { proxy, tangent, .. } => run.push(proxy, tangent),
+            Step::Stuck { deviation, .. } => stuck = Some(deviation),
+        }
+        stuck.is_none()
     });
     match stuck {
         Some(deviation) => Err(CurveError::ToleranceTooFine { value: tolerance / SHARE, finest: deviation / SHARE }),
@@ -150,14 +153,15 @@ pub(in crate::curve) enum Step {
 }
 
 /// Walks a part of a source without breaks in cubics with its ends and end derivatives, halving until each is within
-/// the tolerance; parts for which `is_least` holds are not cut further.
+/// the tolerance; parts for which `is_least` holds are not cut further. Goes on, and returns true, as long as `take`
+/// does.
 pub(in crate::curve) fn follow<S: Source>(
     source: &S,
     [from, to]: [f64; 2],
     tolerance: f64,
     is_least: &impl Fn(f64, f64) -> bool,
-    take: &mut impl FnMut(Step),
-) {
+    take: &mut impl FnMut(Step) -> bool,
+) -> bool {
     let (start, end) = (source.ray(from, Side::After), source.ray(to, Side::Before));
     let third = (to - from) / 3.0;
     let points = [
@@ -174,6 +178,6 @@ pub(in crate::curve) fn follow<S: Source>(
     if is_least(from, to) || middle <= from || middle >= to {
         return take(Step::Stuck { from, to, deviation });
     }
-    follow(source, [from, middle], tolerance, is_least, take);
-    follow(source, [middle, to], tolerance, is_least, take);
+    follow(source, [from, middle], tolerance, is_least, take)
+        && follow(source, [middle, to], tolerance, is_least, take)
 }
