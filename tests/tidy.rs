@@ -7,6 +7,8 @@ use std::path::Path;
 const HOMES: &[(&str, &[&str])] = &[
     ("annotate_snippets", &["cli"]),
     ("clap", &["cli"]),
+    ("dashu_int", &["numeric/integer_polynomial.rs"]),
+    ("dashu_ratio", &["numeric/rational.rs"]),
     ("glam", &["math"]),
     ("indicatif", &["cli"]),
     ("libm", &["math"]),
