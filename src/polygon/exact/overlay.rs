@@ -74,8 +74,11 @@ pub fn overlay(
     segments: &[Segment],
     marks: &[PointId],
 ) -> Overlay {
-    let pieces = cut(chart, points, lines, segments, marks);
-    let (edges, jumps) = unite(pieces);
+    let oriented = segments.iter().map(|segment| from_left_to_right(chart, points, segment));
+    // Before they are cut, so that what coincides is cut once.
+    let strands = Strands::unite(oriented.map(|s| (s.ends, s.line, s.jump)).collect());
+    let pieces = cut(chart, points, lines, &strands, marks);
+    let (edges, jumps) = strands.united_pieces(&pieces);
     let ends: Vec<([PointId; 2], u32)> = edges.iter().map(|edge| (edge.ends, edge.line)).collect();
     let mut planar = Planar::new(chart, points, &ends);
     let order = sweep_order(&mut planar, points, lines);
@@ -83,35 +86,83 @@ pub fn overlay(
     find_cells(&planar, points, lines, edges, jumps)
 }
 
-/// A piece of a segment from left to right.
-struct Piece {
-    ends: [PointId; 2],
-    line: u32,
-    jump: Option<Jump>,
+/// Segments from left to right, those with the same ends as one.
+struct Strands {
+    strands: Vec<Strand>,
+    jumps: Vec<Jump>,
 }
 
-/// All segments in pieces that meet only at common ends, or coincide.
+struct Strand {
+    ends: [PointId; 2],
+    line: u32,
+    /// Range of its jumps.
+    jumps: [u32; 2],
+}
+
+/// A piece of a strand from left to right.
+struct Piece {
+    ends: [PointId; 2],
+    strand: u32,
+}
+
+impl Strands {
+    fn unite(mut segments: Vec<([PointId; 2], u32, Option<Jump>)>) -> Strands {
+        segments.sort_unstable_by_key(|&(ends, line, jump)| (ends, jump, line));
+        let mut united = Strands { strands: Vec::with_capacity(segments.len()), jumps: Vec::new() };
+        for group in segments.chunk_by(|a, b| a.0 == b.0) {
+            let start = united.jumps.len() as u32;
+            united.jumps.extend(group.iter().filter_map(|&(_, _, jump)| jump));
+            let jumps = [start, united.jumps.len() as u32];
+            united.strands.push(Strand { ends: group[0].0, line: group[0].1, jumps });
+        }
+        united
+    }
+
+    fn jumps_of(&self, strand: u32) -> &[Jump] {
+        let [start, end] = self.strands[strand as usize].jumps;
+        &self.jumps[start as usize..end as usize]
+    }
+
+    /// Makes pieces with the same ends one edge with the jumps of all.
+    fn united_pieces(&self, pieces: &[Piece]) -> (Vec<SubEdge>, Vec<Jump>) {
+        let mut order: Vec<([PointId; 2], u32)> =
+            pieces.iter().map(|piece| (piece.ends, piece.strand)).collect();
+        order.sort_unstable();
+        let (mut edges, mut jumps) = (Vec::with_capacity(order.len()), Vec::new());
+        for group in order.chunk_by(|a, b| a.0 == b.0) {
+            let start = jumps.len();
+            jumps.extend(group.iter().flat_map(|&(_, strand)| self.jumps_of(strand)));
+            jumps[start..].sort_unstable();
+            let jumps = [start as u32, jumps.len() as u32];
+            let line = self.strands[group[0].1 as usize].line;
+            edges.push(SubEdge { ends: group[0].0, line, below: 0, above: 0, jumps });
+        }
+        (edges, jumps)
+    }
+}
+
+/// All strands in pieces that meet only at common ends, or coincide.
 fn cut(
     chart: &Chart,
     points: &mut Points,
     lines: &[Line],
-    segments: &[Segment],
+    strands: &Strands,
     marks: &[PointId],
 ) -> Vec<Piece> {
-    let segments: Vec<Segment> = segments.iter().map(|s| from_left_to_right(chart, points, s)).collect();
-    let boxes: Vec<Aabb> = segments.iter().map(|s| Aabb::of(s.ends.map(|p| points.rounded(p)))).collect();
+    let strands = &strands.strands;
+    let boxes: Vec<Aabb> = strands.iter().map(|s| Aabb::of(s.ends.map(|p| points.rounded(p)))).collect();
     let bvh = Bvh::new(&boxes);
     let mut cuts: Vec<(u32, PointId)> = Vec::new();
     bvh.self_pairs(&boxes, |i, j| {
-        let (a, b) = (&segments[i as usize], &segments[j as usize]);
+        let (a, b) = (&strands[i as usize], &strands[j as usize]);
         cut_pair(chart, points, lines, [a, b], |which, at| cuts.push(([i, j][which], at)));
     });
     for &mark in marks {
         let place = points.rounded(mark);
         bvh.touching(&boxes, Aabb { min: place, max: place }, |i| {
-            let segment = &segments[i as usize];
-            if lines[segment.line as usize].side(points, mark) == 0
-                && strictly_between(chart, points, mark, segment)
+            let strand = &strands[i as usize];
+            if lines[strand.line as usize].side(points, mark) == 0
+                && strictly_between(chart, points, mark, strand)
             {
                 cuts.push((i, mark));
             }
@@ -120,15 +171,15 @@ fn cut(
     cuts.sort_by(|a, b| a.0.cmp(&b.0).then_with(|| chart.compare(points, a.1, b.1)));
     cuts.dedup();
 
-    let mut pieces = Vec::with_capacity(segments.len() + cuts.len());
+    let mut pieces = Vec::with_capacity(strands.len() + cuts.len());
     let mut cuts = cuts.into_iter().peekable();
-    for (index, segment) in (0_u32..).zip(&segments) {
-        let mut from = segment.ends[0];
+    for (index, strand) in (0_u32..).zip(strands) {
+        let mut from = strand.ends[0];
         while let Some((_, at)) = cuts.next_if(|&(of, _)| of == index) {
-            pieces.push(Piece { ends: [from, at], line: segment.line, jump: segment.jump });
+            pieces.push(Piece { ends: [from, at], strand: index });
             from = at;
         }
-        pieces.push(Piece { ends: [from, segment.ends[1]], line: segment.line, jump: segment.jump });
+        pieces.push(Piece { ends: [from, strand.ends[1]], strand: index });
     }
     pieces
 }
@@ -144,12 +195,12 @@ fn from_left_to_right(chart: &Chart, points: &Points, segment: &Segment) -> Segm
     }
 }
 
-/// Reports the points strictly inside one of two segments where the other one meets it.
+/// Reports the points strictly inside one of two strands where the other one meets it.
 fn cut_pair(
     chart: &Chart,
     points: &mut Points,
     lines: &[Line],
-    pair: [&Segment; 2],
+    pair: [&Strand; 2],
     mut report: impl FnMut(usize, PointId),
 ) {
     let [a, b] = pair;
@@ -173,7 +224,7 @@ fn cut_pair(
         return;
     }
     // The lines cross in one point, which is on both segments: an end wherever a side is zero.
-    let end_of = |segment: &Segment, sides: [i32; 2]| {
+    let end_of = |segment: &Strand, sides: [i32; 2]| {
         sides.iter().position(|&side| side == 0).map(|which| segment.ends[which])
     };
     match (end_of(a, sides_of_a), end_of(b, sides_of_b)) {
@@ -190,22 +241,9 @@ fn cut_pair(
 }
 
 /// Whether a point of the segment's line lies inside the segment and is none of its ends.
-fn strictly_between(chart: &Chart, points: &Points, point: PointId, segment: &Segment) -> bool {
+fn strictly_between(chart: &Chart, points: &Points, point: PointId, segment: &Strand) -> bool {
     chart.compare(points, segment.ends[0], point) == Ordering::Less
         && chart.compare(points, point, segment.ends[1]) == Ordering::Less
-}
-
-/// Makes pieces with the same ends one edge with the jumps of all.
-fn unite(mut pieces: Vec<Piece>) -> (Vec<SubEdge>, Vec<Jump>) {
-    pieces.sort_by_key(|piece| (piece.ends, piece.jump, piece.line));
-    let (mut edges, mut jumps) = (Vec::with_capacity(pieces.len()), Vec::new());
-    for group in pieces.chunk_by(|a, b| a.ends == b.ends) {
-        let start = jumps.len() as u32;
-        jumps.extend(group.iter().filter_map(|piece| piece.jump));
-        let jumps = [start, jumps.len() as u32];
-        edges.push(SubEdge { ends: group[0].ends, line: group[0].line, below: 0, above: 0, jumps });
-    }
-    (edges, jumps)
 }
 
 /// Sorts the graph for the sweep and tells which edge came from where.
