@@ -43,7 +43,7 @@ fn windings() {
 
 #[test]
 fn crowds() {
-    judge(&specimens::crowds(if is_large() { 10 } else { 6 }));
+    judge(&specimens::crowds(10));
 }
 
 #[test]
@@ -99,11 +99,11 @@ fn near_copies_keep_the_laws() {
     }
 }
 
-/// Ninety cubes (twenty in a debug build) with a common centre, or a common corner: stars, so one piece without
+/// Ninety cubes with a common centre, or a common corner: stars, so one piece without
 /// handles, whatever the order.
 #[test]
 fn cubes_through_a_point() {
-    let count = if is_large() { 90 } else { 20 };
+    let count = 90_usize;
     for corner in [-0.5, 0.0] {
         let mut operands = specimens::turned_cubes(corner, count);
         let one = sound("turned cubes", &solids::union(count), &operands);
