@@ -40,7 +40,7 @@
 //! | ground | [`math`], [`par`], [`numeric`] |
 //! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`] |
 //! | verbs | [`tessellate`], [`boolean`], [`hull`] |
-//! | worlds | [`csg`] recipe to solid, [`io`] values and bytes, [`render`] solids to pictures, [`script`] text to recipe |
+//! | worlds | [`csg`] recipe to solid, [`io`] values and bytes, [`plot`] curves and data to figures, [`render`] solids to pictures, [`script`] text to recipe |
 //! | shell | `cli`, `main.rs`: paths, clock, environment, terminal; only in the program |
 
 // ground
@@ -62,6 +62,7 @@ pub mod tessellate;
 // worlds
 pub mod csg;
 pub mod io;
+pub mod plot;
 pub mod render;
 pub mod script;
 

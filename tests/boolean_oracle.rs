@@ -15,7 +15,7 @@ mod oracle;
 mod solids;
 
 use nasty::{Case, shrunk};
-use ogee::boolean::{self, Op, Tree};
+use ogee::boolean::{self, Op, Options, Steps, Tree};
 use ogee::mesh::Mesh;
 use oracle::Truth;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -29,10 +29,12 @@ fn kernel_equals_oracle() {
     let mut failed = Vec::new();
     for seed in seed..seed + count {
         let case = Case::random(seed);
-        if !disagreements(&case, &kernel).is_empty() {
-            failed.push(seed);
-            if failed.len() <= 3 {
-                report(seed, &case);
+        for kernel in [at_once, pair_by_pair] {
+            if !disagreements(&case, &kernel).is_empty() {
+                failed.push(seed);
+                if failed.len() <= 3 {
+                    report(seed, &case, &kernel);
+                }
             }
         }
     }
@@ -41,18 +43,28 @@ fn kernel_equals_oracle() {
 }
 
 /// The seeds print on their own, so that a long run can be cut short.
-fn report(seed: u64, case: &Case) {
-    let smallest = shrunk(case, 2000, &|case| !disagreements(case, &kernel).is_empty());
+fn report(seed: u64, case: &Case, kernel: Kernel<'_>) {
+    let smallest = shrunk(case, 2000, &|case| !disagreements(case, kernel).is_empty());
     println!("OGEE_ORACLE_SEED={seed} OGEE_ORACLE_COUNT=1 fails; at its smallest:\n{smallest:?}");
-    disagreements(&smallest, &kernel).iter().take(5).for_each(|line| println!("  {line}"));
+    disagreements(&smallest, kernel).iter().take(5).for_each(|line| println!("  {line}"));
 }
 
 fn setting(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).map_or(otherwise, |text| text.parse().expect("a number"))
 }
 
-fn kernel(tree: &Tree, operands: &[&Mesh]) -> Result<Mesh, String> {
-    boolean::evaluate(tree, operands)
+/// One arrangement of everything.
+fn at_once(tree: &Tree, operands: &[&Mesh]) -> Result<Mesh, String> {
+    kernel(tree, operands, Steps::Once)
+}
+
+/// An arrangement for each operation, on the exact results of those before.
+fn pair_by_pair(tree: &Tree, operands: &[&Mesh]) -> Result<Mesh, String> {
+    kernel(tree, operands, Steps::Pairs)
+}
+
+fn kernel(tree: &Tree, operands: &[&Mesh], steps: Steps) -> Result<Mesh, String> {
+    boolean::evaluate_with(tree, operands, &Options { steps, ..Options::default() })
         .map(|combined| combined.solid.into_mesh())
         .map_err(|error| error.to_string())
 }

@@ -7,6 +7,8 @@ use std::path::Path;
 const HOMES: &[(&str, &[&str])] = &[
     ("annotate_snippets", &["cli"]),
     ("clap", &["cli"]),
+    ("csv", &["io/csv.rs"]),
+    ("dejavu", &["plot/text.rs"]),
     ("dashu_int", &["numeric/integer_polynomial.rs"]),
     ("dashu_ratio", &["numeric/rational.rs"]),
     ("glam", &["math"]),
@@ -15,10 +17,14 @@ const HOMES: &[(&str, &[&str])] = &[
     ("png", &["io/png.rs"]),
     ("rayon", &["par.rs"]),
     ("robust", &["numeric/predicates.rs"]),
+    ("roxmltree", &["io/svg"]),
     ("serde_json", &["io", "cli"]),
     ("siphasher", &["numeric/hash.rs"]),
     ("spade", &["polygon/triangulate.rs"]),
     ("stacker", &["script/stack.rs"]),
+    ("svg", &["io/svg", "plot"]),
+    ("tiny_skia", &["plot/raster.rs"]),
+    ("ttf_parser", &["plot"]),
 ];
 
 /// Modules in the order `lib.rs` declares them, each with the layer comment it stands under.

@@ -1,42 +1,54 @@
 //! Kept cells merged into faces, triangulated and joined.
 
+use super::Birth;
+use super::body::Body;
 use super::carriers::{Carrier, Carriers};
 use super::regions::{Fin, Regions, Side};
 use super::scene::Scene;
-use super::{Birth, Combined};
-use crate::math::Vec3;
-use crate::mesh::{Mesh, Solid, Topology, fans};
+use super::world::{Facing, NONE, World};
+use crate::math::Aabb;
 use crate::numeric::DisjointSets;
 use crate::polygon::exact::{Boundary, PointId, followers, triangulate};
 
-/// Builds the solid between inside and outside.
-pub(super) fn assemble(scene: &Scene, carriers: &Carriers, regions: &Regions) -> Combined {
-    let joints = pair_wedges(regions);
-    let faces = merge_cells(scene, carriers, regions, &joints);
-    let mut rims = Rims::new(carriers, regions, &faces, &joints);
-    rims.straighten(scene, carriers, &faces);
+/// Builds the surface between inside and outside.
+pub(super) fn assemble<'a>(scene: Scene<'a>, carriers: Carriers, regions: &Regions) -> (World<'a>, Body) {
+    let (mut scene, mut carriers) = (scene, carriers);
+    let Joints { of_fin: joints, crowded } = pair_wedges(regions);
+    let faces = merge_cells(&scene, &carriers, regions, &joints);
+    let mut rims = Rims::new(&carriers, regions, &faces, &joints);
+    let middles = rims.straighten(&scene, &carriers, &faces);
+    let touches_itself = faces.any_merged_across(regions, &joints, &crowded)
+        || middles.any_met_by_others(&scene, &carriers, regions);
     let mut surface = Surface { of_rim: vec![NONE; rims.rims.len()], ..Surface::default() };
-    surface.add_whole_triangles(scene, carriers, regions);
+    surface.add_whole_triangles(&scene, &carriers, regions);
     for face in 0..rims.of_face.len() {
-        surface.add_face(scene, carriers, &faces, &rims, face);
+        surface.add_face(&mut scene, &mut carriers, &faces, &rims, face);
     }
     surface.join(regions, &rims, &joints);
-    surface.finish(scene)
+    let body = surface.finish(&scene, !touches_itself);
+    (scene.world, body)
 }
 
-const NONE: u32 = u32::MAX;
+/// How kept cells are joined along edges.
+struct Joints {
+    /// For each fin of a kept cell, the fin on the other flank of the solid wedge beside it; [`NONE`] for other fins.
+    of_fin: Vec<u32>,
+    /// For each fin, whether several wedges meet at its edge.
+    crowded: Vec<bool>,
+}
 
-/// For each fin of a kept cell, the fin on the other flank of the solid wedge beside it; [`NONE`] for other fins.
-fn pair_wedges(regions: &Regions) -> Vec<u32> {
-    let mut joints = vec![NONE; regions.fins.len()];
+fn pair_wedges(regions: &Regions) -> Joints {
+    let count = regions.fins.len();
+    let mut joints = Joints { of_fin: vec![NONE; count], crowded: vec![false; count] };
     for range in &regions.edges {
         let kept: Vec<u32> =
             range.clone().filter(|&f| regions.is_kept(regions.fins[f as usize].cell)).collect();
         for (i, &fin) in kept.iter().enumerate() {
+            joints.crowded[fin as usize] = kept.len() > 2;
             if regions.is_solid_after(&regions.fins[fin as usize]) {
                 let other = kept[(i + 1) % kept.len()];
-                joints[fin as usize] = other;
-                joints[other as usize] = fin;
+                joints.of_fin[fin as usize] = other;
+                joints.of_fin[other as usize] = fin;
             }
         }
     }
@@ -57,12 +69,11 @@ struct Face {
     birth: Birth,
 }
 
-fn merge_cells(scene: &Scene, carriers: &Carriers, regions: &Regions, joints: &[u32]) -> Faces {
-    let material =
-        |cell: u32| birth_of(carriers, cell).map(|birth| scene.members[birth.operand as usize].material);
+fn merge_cells(scene: &Scene<'_>, carriers: &Carriers, regions: &Regions, joints: &[u32]) -> Faces {
+    let label = |cell: u32| birth_of(carriers, cell).map(|birth| scene.world.label(birth));
     let mut sets = DisjointSets::new(carriers.cell_count as usize);
     for (fin, other) in carrier_joints(regions, joints) {
-        if are_flanks_of_one_edge(fin, other) && material(fin.cell) == material(other.cell) {
+        if are_flanks_of_one_edge(fin, other) && label(fin.cell) == label(other.cell) {
             sets.join(fin.cell, other.cell);
         }
     }
@@ -82,6 +93,17 @@ fn merge_cells(scene: &Scene, carriers: &Carriers, regions: &Regions, joints: &[
         }
     }
     Faces { of_cell, faces }
+}
+
+impl Faces {
+    /// Whether a face goes on across an edge that another wedge touches.
+    fn any_merged_across(&self, regions: &Regions, joints: &[u32], crowded: &[bool]) -> bool {
+        (0..joints.len()).filter(|&fin| crowded[fin] && joints[fin] != NONE).any(|fin| {
+            let (fin, other) = (&regions.fins[fin], &regions.fins[joints[fin] as usize]);
+            let face = |fin: &Fin| self.of_cell.get(fin.cell as usize);
+            are_flanks_of_one_edge(fin, other) && face(fin) == face(other)
+        })
+    }
 }
 
 /// Joined pairs of fins.
@@ -169,7 +191,7 @@ impl Rims {
     }
 
     /// Finds how rims follow each other, and makes one of those that run straight on between the same two faces.
-    fn straighten(&mut self, scene: &Scene, carriers: &Carriers, faces: &Faces) {
+    fn straighten(&mut self, scene: &Scene<'_>, carriers: &Carriers, faces: &Faces) -> Middles {
         for (index, face) in faces.faces.iter().enumerate() {
             let Carrier { chart, lines, .. } = &carriers.carriers[face.carrier as usize];
             let boundary = self.boundary_in_chart(face, index);
@@ -187,6 +209,7 @@ impl Rims {
             .enumerate()
             .map(|(rim, _)| once[rim] && self.runs_on(scene, carriers, faces, rim, &once))
             .collect();
+        let middles = self.middles(&runs_on);
         for (rim, runs_on) in runs_on.iter().enumerate() {
             if *runs_on {
                 let next = self.rims[rim].next as usize;
@@ -204,6 +227,22 @@ impl Rims {
         for members in &mut self.of_face {
             members.retain(|&rim| !self.rims[rim as usize].absorbed);
         }
+        middles
+    }
+
+    /// The points at which rims run straight on.
+    fn middles(&self, runs_on: &[bool]) -> Middles {
+        let passed = (0..self.rims.len()).filter(|&rim| runs_on[rim]);
+        let mut points: Vec<PointId> = passed.map(|rim| self.rims[rim].ends[1]).collect();
+        points.sort_unstable();
+        points.dedup();
+        let mut rims_at = vec![0; points.len()];
+        for end in self.rims.iter().flat_map(|rim| rim.ends) {
+            if let Ok(at) = points.binary_search(&end) {
+                rims_at[at] += 1;
+            }
+        }
+        Middles { points, rims_at }
     }
 
     /// The rims of a face as the chart sees them, with the face on the left.
@@ -231,7 +270,7 @@ impl Rims {
     }
 
     /// Whether a rim and the next one are one straight edge between two faces that both pass its middle once.
-    fn runs_on(&self, scene: &Scene, carriers: &Carriers, faces: &Faces, rim: usize, once: &[bool]) -> bool {
+    fn runs_on(&self, scene: &Scene<'_>, carriers: &Carriers, faces: &Faces, rim: usize, once: &[bool]) -> bool {
         let here = &self.rims[rim];
         let next = &self.rims[here.next as usize];
         if here.twin == NONE || next.twin == NONE {
@@ -248,23 +287,51 @@ impl Rims {
     }
 }
 
+/// Points at which edges of the result run straight on, without a vertex.
+struct Middles {
+    /// The points, in order.
+    points: Vec<PointId>,
+    /// For each point, how many rims begin or end there.
+    rims_at: Vec<u32>,
+}
+
+impl Middles {
+    /// Whether another edge or vertex touches one of the edges there: two edges have four rims.
+    fn any_met_by_others(&self, scene: &Scene<'_>, carriers: &Carriers, regions: &Regions) -> bool {
+        let is_kept = |t: usize| !carriers.touched[t] && regions.is_kept(regions.cell_of_triangle[t]);
+        self.rims_at.iter().any(|&count| count > 4)
+            || !self.points.is_empty()
+                && (0..scene.corners.len())
+                    .filter(|&t| is_kept(t))
+                    .any(|t| scene.corners[t].iter().any(|corner| self.points.binary_search(corner).is_ok()))
+    }
+}
+
 /// The result as triangles with twins, before vertices are numbered.
 #[derive(Default)]
 struct Surface {
     corners: Vec<[PointId; 3]>,
     birth: Vec<Birth>,
+    facings: Vec<Facing>,
     /// For half-edge `3 t + i` of the result, its twin.
     twins: Vec<u32>,
+    /// For each half-edge, its line in the world, or [`NONE`].
+    lines: Vec<u32>,
     /// For each triangle of the scene, its triangle in the result.
     of_whole: Vec<u32>,
     /// For each rim, its half-edge in the result.
     of_rim: Vec<u32>,
 }
 
+/// Where the sides of a triangle `a b c` are after it is turned over to `b a c`.
+const TURNED: [u32; 3] = [0, 2, 1];
+
 impl Surface {
-    fn push(&mut self, corners: [PointId; 3], birth: Birth) -> u32 {
+    fn push(&mut self, corners: [PointId; 3], birth: Birth, facing: Facing) -> u32 {
         self.corners.push(corners);
         self.birth.push(birth);
+        self.facings.push(facing);
+        self.lines.extend([NONE; 3]);
         self.twins.extend([NONE; 3]);
         self.corners.len() as u32 - 1
     }
@@ -275,21 +342,26 @@ impl Surface {
     }
 
     /// Adds the untouched triangles that are kept, joined among themselves.
-    fn add_whole_triangles(&mut self, scene: &Scene, carriers: &Carriers, regions: &Regions) {
-        self.of_whole = vec![NONE; scene.triangles.len()];
-        for (t, triangle) in scene.triangles.iter().enumerate() {
-            if carriers.touched[t] || !regions.is_kept(regions.cell_of_triangle[t]) {
+    fn add_whole_triangles(&mut self, scene: &Scene<'_>, carriers: &Carriers, regions: &Regions) {
+        self.of_whole = vec![NONE; scene.corners.len()];
+        for (t, &[a, b, c]) in (0_u32..).zip(&scene.corners) {
+            let cell = regions.cell_of_triangle[t as usize];
+            if carriers.touched[t as usize] || !regions.is_kept(cell) {
                 continue;
             }
-            let [a, b, c] = triangle.corners;
             // Turned over where the outside of the operand is inside the result.
-            let turned = regions.inside[regions.cell_of_triangle[t] as usize][0];
-            let corners = if turned { [b, a, c] } else { [a, b, c] };
-            self.of_whole[t] =
-                self.push(corners, Birth { operand: triangle.operand, triangle: triangle.index });
+            let turned = regions.inside[cell as usize][0];
+            let facing = scene.facing(t).unwrap_or(Facing::UNKNOWN);
+            let (corners, facing) = if turned { ([b, a, c], facing.turned()) } else { ([a, b, c], facing) };
+            let triangle = self.push(corners, scene.births[t as usize], facing);
+            self.of_whole[t as usize] = triangle;
+            let sides = if turned { TURNED } else { [0, 1, 2] };
+            for (half_edge, side) in (3 * t..).zip(sides) {
+                self.lines[(3 * triangle + side) as usize] = scene.line_index(half_edge);
+            }
         }
         for (half_edge, &twin) in (0_u32..).zip(&scene.twins) {
-            if twin != Topology::NONE && half_edge < twin {
+            if twin != NONE && half_edge < twin {
                 let (a, b) =
                     (self.of_whole_half_edge(regions, half_edge), self.of_whole_half_edge(regions, twin));
                 if let (Some(a), Some(b)) = (a, b) {
@@ -306,27 +378,39 @@ impl Surface {
             return None;
         }
         let turned = regions.inside[regions.cell_of_triangle[half_edge as usize / 3] as usize][0];
-        // Turned over, the corners are b a c: side 0 stays, sides 1 and 2 change places.
-        let side = if turned { [0, 2, 1][half_edge as usize % 3] } else { half_edge % 3 };
+        let side = if turned { TURNED[half_edge as usize % 3] } else { half_edge % 3 };
         Some(3 * triangle + side)
     }
 
     /// Triangulates a face; its inner edges are joined, its rims remembered.
-    fn add_face(&mut self, scene: &Scene, carriers: &Carriers, faces: &Faces, rims: &Rims, face: usize) {
+    fn add_face(
+        &mut self,
+        scene: &mut Scene<'_>,
+        carriers: &mut Carriers,
+        faces: &Faces,
+        rims: &Rims,
+        face: usize,
+    ) {
         let Face { carrier, outward, birth } = faces.faces[face];
-        let Carrier { chart, lines, .. } = &carriers.carriers[carrier as usize];
+        let carrier = &mut carriers.carriers[carrier as usize];
+        let facing = Facing::new(carrier.plane, outward);
         let boundary = rims.boundary_in_chart(&faces.faces[face], face);
         let mut rim_of: Vec<([PointId; 2], u32)> =
             boundary.iter().zip(&rims.of_face[face]).map(|(edge, &rim)| (edge.ends, rim)).collect();
         rim_of.sort_unstable();
         let mut inner: Vec<([PointId; 2], u32)> = Vec::new();
-        for [a, b, c] in triangulate(chart, scene.points(), lines, &boundary) {
-            let triangle = self.push(if outward { [a, b, c] } else { [b, a, c] }, birth);
-            let sides = if outward { [0, 1, 2] } else { [0, 2, 1] };
+        for [a, b, c] in triangulate(&carrier.chart, scene.points(), &carrier.lines, &boundary) {
+            let triangle = self.push(if outward { [a, b, c] } else { [b, a, c] }, birth, facing);
+            let sides = if outward { [0, 1, 2] } else { TURNED };
             for (ends, side) in [[a, b], [b, c], [c, a]].into_iter().zip(sides) {
                 let half_edge = 3 * triangle + side;
                 match rim_of.binary_search_by_key(&ends, |&(ends, _)| ends) {
-                    Ok(at) => self.of_rim[rim_of[at].1 as usize] = half_edge,
+                    Ok(at) => {
+                        let rim = rim_of[at].1;
+                        self.of_rim[rim as usize] = half_edge;
+                        self.lines[half_edge as usize] =
+                            world_line(&mut scene.world, carrier, rims.rims[rim as usize].line, ends);
+                    }
                     Err(_) => inner.push(([ends[0].min(ends[1]), ends[0].max(ends[1])], half_edge)),
                 }
             }
@@ -363,74 +447,29 @@ impl Surface {
         }
     }
 
-    /// Numbers vertices, one for each fan of triangles.
-    fn finish(self, scene: &Scene) -> Combined {
+    fn finish(self, scene: &Scene<'_>, embedded: bool) -> Body {
         debug_assert!(!self.twins.contains(&NONE), "a half-edge without a twin");
-        let (vertices, count) = fans(&self.twins);
-        let mut positions = vec![Vec3::ZERO; count as usize];
-        for (&point, &vertex) in self.corners.iter().flatten().zip(&vertices) {
-            positions[vertex as usize] = scene.places.position(point);
-        }
-        let embedded = scene.places.is_exact()
-            && self.corners.iter().flatten().all(|&point| scene.places.is_given(point));
-        let mut mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
-        let mut birth = self.birth;
-        part_double_edges(&mut mesh, self.twins, &mut birth);
-        Combined { solid: Solid::assume(mesh, embedded), birth }
-    }
-}
-
-/// Gives each pair of half-edges an edge of its own: where a solid pinches itself along an edge, both wedges may run
-/// between the same two vertices; all but one of them get a vertex in the middle.
-fn part_double_edges(mesh: &mut Mesh, mut twins: Vec<u32>, birth: &mut Vec<Birth>) {
-    loop {
-        let Some((half_edge, twin)) = double_edge(mesh, &twins) else { return };
-        let ends = |h: u32| {
-            let triangle = mesh.triangles[h as usize / 3];
-            [triangle[h as usize % 3], triangle[(h as usize + 1) % 3]].map(|v| mesh.positions[v as usize])
-        };
-        let [a, b] = ends(half_edge);
-        let middle = mesh.positions.len() as u32;
-        mesh.positions.push(0.5 * a + 0.5 * b);
-        let far = split_side(mesh, &mut twins, birth, half_edge, middle);
-        let other_far = split_side(mesh, &mut twins, birth, twin, middle);
-        for (x, y) in [(half_edge, other_far), (twin, far)] {
-            twins[x as usize] = y;
-            twins[y as usize] = x;
+        let bounds = Aabb::of(self.corners.iter().flatten().map(|&p| scene.points().rounded(p)));
+        Body {
+            corners: self.corners,
+            births: self.birth,
+            twins: self.twins,
+            facings: self.facings,
+            lines: self.lines,
+            bounds,
+            embedded,
         }
     }
 }
 
-/// A half-edge, with its twin, between vertices that another pair joins too.
-fn double_edge(mesh: &Mesh, twins: &[u32]) -> Option<(u32, u32)> {
-    let mut edges: Vec<(u32, u32, u32)> = (0..3 * mesh.triangles.len())
-        .map(|h| (mesh.triangles[h / 3][h % 3], mesh.triangles[h / 3][(h + 1) % 3], h as u32))
-        .filter(|(from, to, _)| from < to)
-        .collect();
-    edges.sort_unstable();
-    let double = edges.windows(2).find(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1))?;
-    Some((double[1].2, twins[double[1].2 as usize]))
-}
-
-/// Cuts the triangle of a half-edge in two at a vertex on it. The half-edge keeps its first half; the other half, which
-/// is returned, goes to a new triangle.
-fn split_side(
-    mesh: &mut Mesh,
-    twins: &mut Vec<u32>,
-    birth: &mut Vec<Birth>,
-    half_edge: u32,
-    middle: u32,
-) -> u32 {
-    let (t, side) = (half_edge as usize / 3, half_edge as usize % 3);
-    let (to, opposite) = ((side + 1) % 3, (side + 2) % 3);
-    let new = mesh.triangles.len() as u32;
-    let [b, c] = [to, opposite].map(|i| mesh.triangles[t][i]);
-    mesh.triangles[t][to] = middle;
-    mesh.triangles.push([middle, b, c]);
-    birth.push(birth[t]);
-    let outer = twins[3 * t + to];
-    twins.extend([NONE, outer, (3 * t + to) as u32]);
-    twins[outer as usize] = 3 * new + 1;
-    twins[3 * t + to] = 3 * new + 2;
-    3 * new
+/// The line of the world that a boundary edge runs on; [`NONE`] where that follows from its ends.
+fn world_line(world: &mut World<'_>, carrier: &mut Carrier, line: u32, ends: [PointId; 2]) -> u32 {
+    if ends.iter().all(|&end| world.points().as_site(end).is_some()) {
+        return NONE;
+    }
+    let known = &mut carrier.world_lines[line as usize];
+    if *known == NONE {
+        *known = world.add_line(carrier.lines[line as usize].plane());
+    }
+    *known
 }

@@ -3,16 +3,19 @@
 use super::Birth;
 use super::contacts::Contacts;
 use super::scene::Scene;
-use crate::mesh::Topology;
+use super::world::{Facing, Lookup, NONE};
 use crate::numeric::DisjointSets;
 use crate::polygon::exact::{Chart, Jump, Line, Overlay, Plane, PointId, Segment, SubEdge, overlay};
-use std::collections::HashMap;
 
 /// A plane with the faces of all operands that lie in it, as cells.
 #[derive(Debug)]
 pub(super) struct Carrier {
+    /// Index of the plane in the world.
+    pub(super) plane: u32,
     pub(super) chart: Chart,
     pub(super) lines: Vec<Line>,
+    /// For each line, the line of the world it came as, or [`NONE`].
+    pub(super) world_lines: Vec<u32>,
     pub(super) overlay: Overlay,
     /// For each cell, a triangle of the first operand that covers it.
     pub(super) births: Vec<Option<Birth>>,
@@ -30,7 +33,7 @@ pub(super) struct Carriers {
 }
 
 /// Gathers touched triangles by plane and cuts each plane.
-pub(super) fn cut(scene: &mut Scene, contacts: Contacts) -> Carriers {
+pub(super) fn cut(scene: &mut Scene<'_>, contacts: Contacts) -> Carriers {
     let mut drafts = Drafts::default();
     let touched = contacts.touched;
     for t in (0..touched.len() as u32).filter(|&t| touched[t as usize]) {
@@ -59,79 +62,82 @@ pub(super) fn cut(scene: &mut Scene, contacts: Contacts) -> Carriers {
 #[derive(Default)]
 struct Drafts {
     drafts: Vec<Draft>,
-    /// The draft of a plane of the scene.
-    by_plane: HashMap<u32, u32>,
-    /// For each touched triangle, its draft and whether its normal is the chart's.
-    home: HashMap<u32, (u32, bool)>,
+    /// The draft of a plane of the world.
+    by_plane: Lookup<u32, u32>,
 }
 
 struct Draft {
+    plane: u32,
     chart: Chart,
     lines: Vec<Line>,
+    world_lines: Vec<u32>,
     segments: Vec<Segment>,
     marks: Vec<PointId>,
-    /// The line of another plane of the scene.
-    line_of_plane: HashMap<u32, u32>,
+    /// The line of another plane of the world.
+    line_of_plane: Lookup<u32, u32>,
 }
 
 impl Drafts {
-    fn add_triangle(&mut self, scene: &mut Scene, triangle: u32) {
-        let (plane, outward) = scene.shared_plane(triangle);
+    fn add_triangle(&mut self, scene: &mut Scene<'_>, triangle: u32) {
+        let plane = scene.shared_facing(triangle).plane();
         let next = self.drafts.len() as u32;
-        let draft = *self.by_plane.entry(plane).or_insert(next);
-        if draft == next {
-            self.drafts.push(Draft::new(scene.plane(plane)));
+        if *self.by_plane.entry(plane).or_insert(next) == next {
+            self.drafts.push(Draft::new(plane, scene.world.plane(plane)));
         }
-        self.home.insert(triangle, (draft, outward));
     }
 
-    /// Adds the sides of a triangle that do not continue in its plane.
-    fn add_sides(&mut self, scene: &Scene, triangle: u32) {
-        let (home, outward) = self.home[&triangle];
-        let Scene { triangles, twins, .. } = scene;
-        let owner = &triangles[triangle as usize];
-        for side in 0..3 {
-            let twin = twins[3 * triangle as usize + side];
-            if twin != Topology::NONE && self.home.get(&(twin / 3)) == Some(&(home, outward)) {
+    /// The facing of a touched triangle, and the draft of its plane.
+    fn home(&mut self, scene: &Scene<'_>, triangle: u32) -> (Facing, &mut Draft) {
+        let facing = scene.facing(triangle).expect("touched triangles were asked for it");
+        (facing, &mut self.drafts[self.by_plane[&facing.plane()] as usize])
+    }
+
+    /// Adds the sides of a triangle across which its face does not go on.
+    fn add_sides(&mut self, scene: &Scene<'_>, triangle: u32) {
+        let (facing, draft) = self.home(scene, triangle);
+        for half_edge in 3 * triangle..3 * triangle + 3 {
+            if scene.goes_on(half_edge, draft.chart.plane()) {
                 continue;
             }
-            let (from, to) = (owner.corners[side], owner.corners[(side + 1) % 3]);
-            let draft = &mut self.drafts[home as usize];
-            let line = draft.chart.line_through(scene.points(), from, to).expect("sides have length");
-            let line = draft.add_line(line);
+            let line = scene.line_of_side(&draft.chart, half_edge);
+            let line = draft.add_line(line, scene.line_index(half_edge));
+            let [from, to] = scene.ends(half_edge);
             // Seen against its normal a triangle runs clockwise and counts as uncovering what is on its left.
-            let (ends, amount) = if outward { ([from, to], 1) } else { ([to, from], -1) };
-            let jump = Some(Jump { operand: owner.operand, amount, face: triangle });
+            let (ends, amount) = if facing.is_with_plane() { ([from, to], 1) } else { ([to, from], -1) };
+            let jump = Some(Jump { operand: scene.member_of(triangle), amount, face: triangle });
             draft.segments.push(Segment { ends, line, jump });
         }
     }
 
     /// Adds to the carrier of `triangle` what it has in common with `other`.
-    fn add_trace(&mut self, scene: &mut Scene, triangle: u32, other: u32, ends: [PointId; 2]) {
-        let draft = &mut self.drafts[self.home[&triangle].0 as usize];
+    fn add_trace(&mut self, scene: &Scene<'_>, triangle: u32, other: u32, ends: [PointId; 2]) {
+        let (_, draft) = self.home(scene, triangle);
         if ends[0] == ends[1] {
             draft.marks.push(ends[0]);
             return;
         }
-        let (plane, _) = scene.shared_plane(other);
-        let line = draft.line_of(plane, scene.plane(plane));
+        let plane = scene.facing(other).expect("touched triangles were asked for it").plane();
+        let line = draft.line_of(plane, scene.world.plane(plane));
         draft.segments.push(Segment { ends, line, jump: None });
     }
 }
 
 impl Draft {
-    fn new(plane: &Plane) -> Draft {
+    fn new(index: u32, plane: &Plane) -> Draft {
         Draft {
+            plane: index,
             chart: Chart::new(plane),
             lines: Vec::new(),
+            world_lines: Vec::new(),
             segments: Vec::new(),
             marks: Vec::new(),
-            line_of_plane: HashMap::new(),
+            line_of_plane: Lookup::default(),
         }
     }
 
-    fn add_line(&mut self, line: Line) -> u32 {
+    fn add_line(&mut self, line: Line, world_line: u32) -> u32 {
         self.lines.push(line);
+        self.world_lines.push(world_line);
         self.lines.len() as u32 - 1
     }
 
@@ -140,24 +146,24 @@ impl Draft {
             return line;
         }
         let line = self.chart.line(plane).expect("planes with a common segment cross");
-        let line = self.add_line(line);
+        let line = self.add_line(line, NONE);
         self.line_of_plane.insert(index, line);
         line
     }
 
-    fn finish(mut self, scene: &mut Scene) -> Carrier {
+    fn finish(mut self, scene: &mut Scene<'_>) -> Carrier {
         self.marks.sort_unstable();
         self.marks.dedup();
-        let Draft { chart, lines, segments, marks, .. } = self;
-        let overlay = overlay(&chart, &mut scene.places.points, &lines, &segments, &marks);
+        let Draft { plane, chart, lines, world_lines, segments, marks, .. } = self;
+        let overlay = overlay(&chart, &mut scene.world.places.points, &lines, &segments, &marks);
         let births = find_births(scene, &chart, &overlay);
-        Carrier { chart, lines, overlay, births, first_cell: 0 }
+        Carrier { plane, chart, lines, world_lines, overlay, births, first_cell: 0 }
     }
 }
 
 /// For each covered cell, the least triangle of its first operand among those whose sides bound the part of the plane
 /// that this operand covers around the cell.
-fn find_births(scene: &Scene, chart: &Chart, overlay: &Overlay) -> Vec<Option<Birth>> {
+fn find_births(scene: &Scene<'_>, chart: &Chart, overlay: &Overlay) -> Vec<Option<Birth>> {
     // One sheet for each operand that covers a cell; sheets of one operand run on where it does not change.
     let mut first_sheet = vec![0];
     first_sheet.extend(overlay.coverage.iter().scan(0, |sum, cover| {
@@ -184,8 +190,7 @@ fn find_births(scene: &Scene, chart: &Chart, overlay: &Overlay) -> Vec<Option<Bi
         for jump in overlay.jumps_of(edge) {
             let cell = if lies_above(scene, chart, jump) { edge.above } else { edge.below };
             if let Some(sheet) = sheet(cell, jump.operand) {
-                let triangle = scene.triangles[jump.face as usize].index;
-                let birth = Birth { operand: jump.operand, triangle };
+                let birth = scene.births[jump.face as usize];
                 let known = &mut births[sheets.find(sheet) as usize];
                 *known = Some(known.map_or(birth, |known| known.min(birth)));
             }
@@ -197,8 +202,8 @@ fn find_births(scene: &Scene, chart: &Chart, overlay: &Overlay) -> Vec<Option<Bi
 }
 
 /// Whether the triangle behind a jump lies above the edge: coverage then grows upward with its own sign.
-fn lies_above(scene: &Scene, chart: &Chart, jump: &Jump) -> bool {
-    let [a, b, c] = scene.triangles[jump.face as usize].corners;
+fn lies_above(scene: &Scene<'_>, chart: &Chart, jump: &Jump) -> bool {
+    let [a, b, c] = scene.corners[jump.face as usize];
     chart.orientation(scene.points(), a, b, c) == jump.amount
 }
 

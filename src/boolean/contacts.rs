@@ -1,137 +1,337 @@
-//! Pairs of triangles that touch, and where.
+//! Where faces touch.
+//!
+//! Two faces in different planes meet along the line of both planes. It is looked at triangle by triangle, but diagonals,
+//! the edges that only the triangulation has, are looked through: where the line crosses one, the contact goes on in the
+//! next triangle, and no point is made. So every end of a contact is a corner or lies on a true edge of one of the two
+//! faces, and has a name of bounded width.
 
+use super::pairs::candidates;
 use super::scene::Scene;
-use crate::math::Aabb;
-use crate::mesh::Topology;
-use crate::polygon::exact::{Plane, PointId};
-use crate::spatial::Bvh;
+use super::world::NONE;
+use crate::numeric::DisjointSets;
+use crate::math::Vec3;
+use crate::polygon::exact::{Plane, PointId, Points};
 use std::cmp::Ordering;
 
-/// What two triangles of different planes have in common: a segment, or a point where both ends are the same.
+/// What two faces of different planes have in common: a segment, or a point where both ends are the same.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trace {
+    /// A triangle of each face.
     pub(super) triangles: [u32; 2],
     pub(super) ends: [PointId; 2],
 }
 
 /// All contacts of a scene.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Contacts {
     /// For each triangle, whether it touches another one, or lies in the plane of a neighbour that does.
     pub(super) touched: Vec<bool>,
     pub(super) traces: Vec<Trace>,
 }
 
-/// Finds all contacts between different operands and, in operands not known to be embedded, with themselves. Two
-/// triangles that meet only in a corner of both, or in the edge across which they are neighbours, have no contact.
-pub(super) fn find(scene: &mut Scene) -> Contacts {
-    let mut contacts = Contacts { touched: vec![false; scene.triangles.len()], traces: Vec::new() };
+/// Finds all contacts between different members and, in members not known to be embedded, with themselves. Two triangles
+/// that meet only in a corner of both, or in the edge across which they are neighbours, have no contact.
+pub(super) fn find(scene: &mut Scene<'_>) -> Contacts {
+    let count = scene.corners.len();
+    let mut finder = Finder {
+        contacts: Contacts { touched: vec![false; count], traces: Vec::new() },
+        stops: Vec::new(),
+        faces: None,
+    };
     for [t, s] in candidates(scene) {
-        contacts.examine(scene, t, s);
+        finder.examine(scene, t, s);
     }
-    for half_edge in (0..scene.twins.len()).filter(|&h| scene.twins[h] == Topology::NONE) {
+    finder.chain(scene);
+    let mut contacts = finder.contacts;
+    for half_edge in (0..scene.twins.len()).filter(|&h| scene.twins[h] == NONE) {
         contacts.touched[half_edge / 3] = true;
     }
     contacts.spread_over_planes(scene);
     contacts
 }
 
-/// Pairs of triangles whose boxes touch and that may have a contact.
-fn candidates(scene: &Scene) -> Vec<[u32; 2]> {
-    let members = &scene.members;
-    let boxes: Vec<Aabb> = members.iter().map(|member| member.bounds).collect();
-    let mut pairs: Vec<(u32, u32)> = Vec::new();
-    Bvh::new(&boxes).self_pairs(&boxes, |i, j| pairs.push((i, j)));
-    pairs.extend((0..members.len() as u32).filter(|&i| !members[i as usize].embedded).map(|i| (i, i)));
-    pairs.sort_unstable();
-
-    let mut found = Vec::new();
-    for (i, j) in pairs {
-        if i == j {
-            let own = Part::of(scene, i, boxes[i as usize]);
-            own.bvh.self_pairs(&own.boxes, |a, b| {
-                found.push([own.triangles[a as usize], own.triangles[b as usize]]);
-            });
-        } else {
-            let overlap = boxes[i as usize].intersection(boxes[j as usize]);
-            let (a, b) = (Part::of(scene, i, overlap), Part::of(scene, j, overlap));
-            a.bvh.pairs(&a.boxes, &b.bvh, &b.boxes, |x, y| {
-                found.push([a.triangles[x as usize], b.triangles[y as usize]]);
-            });
-        }
-    }
-    found.sort_unstable();
-    found
+/// Finds contacts.
+struct Finder {
+    contacts: Contacts,
+    /// Ends of contacts that go on across diagonals.
+    stops: Vec<Stop>,
+    /// Triangles joined across diagonals that contacts cross.
+    faces: Option<DisjointSets>,
 }
 
-/// The triangles of an operand that touch a box.
-struct Part {
-    triangles: Vec<u32>,
-    boxes: Vec<Aabb>,
-    bvh: Bvh,
+/// Where a contact of two faces starts or ends.
+#[derive(Clone, Copy)]
+struct Stop {
+    triangles: [u32; 2],
+    at: PointId,
+    kind: StopKind,
 }
 
-impl Part {
-    fn of(scene: &Scene, member: u32, within: Aabb) -> Part {
-        let (mut triangles, mut boxes) = (Vec::new(), Vec::new());
-        for t in scene.members[member as usize].triangles.clone() {
-            let bounds = scene.bounds_of(t);
-            if bounds.touches(within) {
-                triangles.push(t);
-                boxes.push(bounds);
-            }
-        }
-        let bvh = Bvh::new(&boxes);
-        Part { triangles, boxes, bvh }
+impl Stop {
+    /// With the triangles changed over, the line runs the other way.
+    fn seen_from_the_other(self) -> Stop {
+        let [t, s] = self.triangles;
+        let kind = match self.kind {
+            StopKind::Start => StopKind::End,
+            StopKind::End => StopKind::Start,
+            StopKind::Touch => StopKind::Touch,
+        };
+        Stop { triangles: [s, t], kind, ..self }
     }
 }
 
-impl Contacts {
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum StopKind {
+    Start,
+    End,
+    /// The faces touch there, for all that these two triangles tell.
+    Touch,
+}
+
+/// The line of two planes, run through along the product of their normals.
+#[derive(Clone, Copy)]
+struct Direction {
+    axis: usize,
+    forward: bool,
+}
+
+/// Where the part of a triangle in a plane ends.
+#[derive(Clone, Copy)]
+enum End {
+    Point(PointId),
+    /// On a diagonal: the part goes on in the next triangle.
+    Diagonal(u32),
+}
+
+/// The part of a triangle in the plane of another one.
+struct Section {
+    start: End,
+    end: End,
+    plane: Plane,
+}
+
+impl Finder {
     /// Records what triangles `t` and `s` have in common.
-    fn examine(&mut self, scene: &mut Scene, t: u32, s: u32) {
-        let plane_t = *scene.own_plane(t);
-        let sides_s = sides(scene, &plane_t, t, s);
+    fn examine(&mut self, scene: &mut Scene<'_>, t: u32, s: u32) {
+        let sides_s = sides(scene, t, s);
         if all_on_one_side(sides_s) {
             return;
         }
         if sides_s == [0; 3] {
             if !are_unfolded_neighbours(scene, t, s) {
-                self.touched[t as usize] = true;
-                self.touched[s as usize] = true;
+                self.touch([t, s]);
             }
             return;
         }
-        let plane_s = *scene.own_plane(s);
-        let sides_t = sides(scene, &plane_s, s, t);
+        let sides_t = sides(scene, s, t);
         if all_on_one_side(sides_t) || meet_only_at_shared_corners(scene, [t, s], [sides_t, sides_s]) {
             return;
         }
-        let across_t = section(scene, t, sides_t, &plane_s);
-        let across_s = section(scene, s, sides_s, &plane_t);
-        let later = |a: PointId, b: PointId| if along(scene, a, b) == Ordering::Less { b } else { a };
-        let sooner = |a: PointId, b: PointId| if along(scene, a, b) == Ordering::Less { a } else { b };
-        let ends = [later(across_t[0], across_s[0]), sooner(across_t[1], across_s[1])];
-        if along(scene, ends[0], ends[1]) == Ordering::Greater || is_shared(scene, [t, s], ends) {
-            return;
+        let (plane_t, plane_s) = (scene.own_plane(t), scene.own_plane(s));
+        let direction = Direction::of(&plane_t, &plane_s);
+        let of_t = self.section(scene, t, sides_t, plane_t, &plane_s);
+        let across = self.section(scene, s, sides_s, plane_s, &plane_t);
+        // The line runs the other way for the second triangle.
+        let of_s = Section { start: across.end, end: across.start, plane: across.plane };
+        match [of_t.start, of_t.end, of_s.start, of_s.end] {
+            [End::Point(a), End::Point(b), End::Point(c), End::Point(d)] => {
+                self.meet_at_points(scene, [t, s], direction, [[a, b], [c, d]]);
+            }
+            _ => self.meet_across_diagonals(scene, [t, s], direction, [&of_t, &of_s]),
         }
-        self.touched[t as usize] = true;
-        self.touched[s as usize] = true;
-        self.traces.push(Trace { triangles: [t, s], ends });
     }
 
+    fn touch(&mut self, triangles: [u32; 2]) {
+        for t in triangles {
+            self.contacts.touched[t as usize] = true;
+        }
+    }
+
+    /// Two sections between points have in common what lies between the later start and the sooner end.
+    fn meet_at_points(
+        &mut self,
+        scene: &Scene<'_>,
+        triangles: [u32; 2],
+        direction: Direction,
+        [a, b]: [[PointId; 2]; 2],
+    ) {
+        let order = |x: PointId, y: PointId| direction.compare(scene, x, y);
+        let start = if order(a[0], b[0]).is_lt() { b[0] } else { a[0] };
+        let end = if order(a[1], b[1]).is_gt() { b[1] } else { a[1] };
+        if order(start, end).is_gt() || is_shared(scene, triangles, [start, end]) {
+            return;
+        }
+        self.touch(triangles);
+        self.contacts.traces.push(Trace { triangles, ends: [start, end] });
+    }
+
+    /// What two sections have in common, where at least one ends on a diagonal: the points at which it starts and ends.
+    fn meet_across_diagonals(
+        &mut self,
+        scene: &Scene<'_>,
+        triangles: [u32; 2],
+        direction: Direction,
+        sections: [&Section; 2],
+    ) {
+        let stop = |at: PointId, kind: StopKind| Stop { triangles, at, kind };
+        let past_start = |p: PointId, section: &Section| direction.distance(scene, p, section.start, section, 1);
+        let before_end = |p: PointId, section: &Section| direction.distance(scene, p, section.end, section, -1);
+        let mut found: [Option<Stop>; 2] = [None; 2];
+        for (own, other) in [(sections[0], sections[1]), (sections[1], sections[0])] {
+            if let End::Point(p) = own.start
+                && past_start(p, other) >= 0
+            {
+                match before_end(p, own).min(before_end(p, other)) {
+                    1 => found[0] = Some(stop(p, StopKind::Start)),
+                    0 => found[0] = Some(stop(p, StopKind::Touch)),
+                    _ => {}
+                }
+            }
+            if let End::Point(p) = own.end
+                && before_end(p, other) >= 0
+            {
+                match past_start(p, own).min(past_start(p, other)) {
+                    1 => found[1] = Some(stop(p, StopKind::End)),
+                    0 => found[1] = Some(stop(p, StopKind::Touch)),
+                    _ => {}
+                }
+            }
+        }
+        for stop in found.into_iter().flatten() {
+            if stop.kind != StopKind::Touch || !is_shared(scene, triangles, [stop.at; 2]) {
+                self.touch(triangles);
+                self.stops.push(stop);
+            }
+        }
+    }
+
+    /// The part of a triangle in a plane that it is not all on one side of, along the product of its normal with the
+    /// plane's: the triangle runs counter-clockwise, so it starts where a side climbs through the plane.
+    fn section(
+        &mut self,
+        scene: &mut Scene<'_>,
+        triangle: u32,
+        sides: [i32; 3],
+        own: Plane,
+        plane: &Plane,
+    ) -> Section {
+        let corners = scene.corners[triangle as usize];
+        let (mut start, mut end) = (None, None);
+        for i in 0..3 {
+            let (before, next) = (sides[(i + 2) % 3], sides[(i + 1) % 3]);
+            if sides[i] == 0 {
+                if next >= before {
+                    start = Some(End::Point(corners[i]));
+                }
+                if next <= before {
+                    end = Some(End::Point(corners[i]));
+                }
+            } else if sides[i] * next < 0 {
+                let crossing = self.crossing(scene, 3 * triangle + i as u32, &own, plane);
+                *(if next > 0 { &mut start } else { &mut end }) = Some(crossing);
+            }
+        }
+        let meets = "the triangle meets the plane";
+        Section { start: start.expect(meets), end: end.expect(meets), plane: own }
+    }
+
+    /// Where a side of a triangle crosses a plane.
+    fn crossing(&mut self, scene: &mut Scene<'_>, half_edge: u32, own: &Plane, plane: &Plane) -> End {
+        if scene.goes_on(half_edge, own) {
+            let count = scene.corners.len();
+            let faces = self.faces.get_or_insert_with(|| DisjointSets::new(count));
+            faces.join(half_edge / 3, scene.twins[half_edge as usize] / 3);
+            return End::Diagonal(half_edge);
+        }
+        let line = scene.line_index(half_edge);
+        let [from, to] = scene.ends(half_edge);
+        let points = &mut scene.world.places.points;
+        End::Point(match line {
+            NONE => points.crossing(from, to, plane),
+            index => {
+                let line = &scene.world.lines[index as usize];
+                points.meeting(own, line, plane).expect("a line that crosses a plane meets it")
+            }
+        })
+    }
+
+    /// Makes traces of the starts and ends that belong together.
+    fn chain(&mut self, scene: &mut Scene<'_>) {
+        let Some(mut faces) = self.faces.take() else { return };
+        let by_faces = |stop: Stop| {
+            let [t, s] = stop.triangles.map(|t| faces.find(t));
+            if t <= s { ([t, s], stop) } else { ([s, t], stop.seen_from_the_other()) }
+        };
+        let mut stops: Vec<([u32; 2], Stop)> = self.stops.drain(..).map(by_faces).collect();
+        stops.sort_by_key(|(faces, _)| *faces);
+        for group in stops.chunk_by_mut(|a, b| a.0 == b.0) {
+            let [t, s] = group[0].1.triangles;
+            let direction = Direction::of(&scene.own_plane(t), &scene.own_plane(s));
+            group.sort_by(|a, b| direction.compare(scene, a.1.at, b.1.at));
+            self.chain_along(group);
+        }
+    }
+
+    /// Joins the stops of two faces, in order along their line.
+    fn chain_along(&mut self, stops: &[([u32; 2], Stop)]) {
+        let triangles = stops[0].1.triangles;
+        let mut depth = 0_i64;
+        let mut last: Option<PointId> = None;
+        for place in stops.chunk_by(|a, b| a.1.at == b.1.at) {
+            let at = place[0].1.at;
+            let count = |kind: StopKind| place.iter().filter(|(_, stop)| stop.kind == kind).count() as i64;
+            let entered = depth > 0;
+            if let Some(from) = last.filter(|_| entered) {
+                self.contacts.traces.push(Trace { triangles, ends: [from, at] });
+            }
+            depth = depth + count(StopKind::Start) - count(StopKind::End);
+            if !entered && depth == 0 {
+                self.contacts.traces.push(Trace { triangles, ends: [at, at] });
+            }
+            last = Some(at);
+        }
+        debug_assert_eq!(depth, 0, "every contact ends");
+    }
+}
+
+impl Direction {
+    fn of(plane_t: &Plane, plane_s: &Plane) -> Direction {
+        let axis = plane_t.longest_cross_axis(plane_s).expect("the planes cross");
+        Direction { axis, forward: plane_t.cross_sign(plane_s, axis) > 0 }
+    }
+
+    /// Orders two points of the line.
+    fn compare(self, scene: &Scene<'_>, a: PointId, b: PointId) -> Ordering {
+        let order = scene.points().compare(a, b, self.axis);
+        if self.forward { order } else { order.reverse() }
+    }
+
+    /// 1 when a point of the line lies inside of an end of a section, 0 at it, -1 outside; `inward` tells whether the
+    /// inside is ahead of it (1) or behind (-1).
+    fn distance(self, scene: &Scene<'_>, p: PointId, end: End, section: &Section, inward: i32) -> i32 {
+        match end {
+            End::Point(q) => inward * self.compare(scene, p, q) as i32,
+            End::Diagonal(half_edge) => {
+                let ([a, b], axis) = (scene.ends(half_edge), section.plane.main_axis());
+                scene.points().orientation(a, b, p, axis) * section.plane.normal_sign(axis)
+            }
+        }
+    }
+}
+
+impl Contacts {
     /// Marks all triangles that continue a marked one in its plane, so that flat faces are seen whole.
-    fn spread_over_planes(&mut self, scene: &mut Scene) {
+    fn spread_over_planes(&mut self, scene: &mut Scene<'_>) {
         let mut stack: Vec<u32> =
             (0..self.touched.len() as u32).filter(|&t| self.touched[t as usize]).collect();
         while let Some(t) = stack.pop() {
-            let plane = *scene.own_plane(t);
             for half_edge in 3 * t..3 * t + 3 {
                 let twin = scene.twins[half_edge as usize];
-                if twin == Topology::NONE || self.touched[twin as usize / 3] {
+                if twin == NONE || self.touched[twin as usize / 3] {
                     continue;
                 }
-                let opposite = scene.triangles[twin as usize / 3].corners[(twin as usize + 2) % 3];
-                if plane.side(scene.points(), opposite) == 0 {
+                let plane = scene.own_plane(t);
+                if plane.side(scene.points(), scene.opposite(twin)) == 0 {
                     self.touched[twin as usize / 3] = true;
                     stack.push(twin / 3);
                 }
@@ -141,10 +341,47 @@ impl Contacts {
 }
 
 /// On which sides of the plane of one triangle the corners of another lie.
-fn sides(scene: &Scene, plane: &Plane, of: u32, triangle: u32) -> [i32; 3] {
-    let own = scene.triangles[of as usize].corners;
-    let side = |p: PointId| if own.contains(&p) { 0 } else { plane.side(scene.points(), p) };
-    scene.triangles[triangle as usize].corners.map(side)
+fn sides(scene: &mut Scene<'_>, of: u32, triangle: u32) -> [i32; 3] {
+    let own = scene.corners[of as usize];
+    let corners = scene.corners[triangle as usize];
+    let slope = Slope::new(scene.points(), own);
+    let quick = corners.map(|p| if own.contains(&p) { Some(0) } else { slope.side(scene.points().rounded(p)) });
+    if let [Some(a), Some(b), Some(c)] = quick {
+        return [a, b, c];
+    }
+    let plane = scene.own_plane(of);
+    [0, 1, 2].map(|i| quick[i].unwrap_or_else(|| plane.side(scene.points(), corners[i])))
+}
+
+/// A triangle's plane in doubles, good enough for points away from it.
+struct Slope {
+    corner: Vec3,
+    normal: Vec3,
+    /// Largest differences along the axes from the corner to the other two, with their errors.
+    reach: Vec3,
+}
+
+impl Slope {
+    fn new(points: &Points, corners: [PointId; 3]) -> Slope {
+        let [a, b, c] = corners.map(|p| points.rounded(p));
+        let (u, v) = (b - a, c - a);
+        Slope { corner: a, normal: u.cross(v), reach: u.abs().max(v.abs()) }
+    }
+
+    /// On which side of the plane a point lies, where doubles can tell.
+    fn side(&self, p: Vec3) -> Option<i32> {
+        // Coordinates are below 2^61 and rounded, so each carries an error of at most 2^7, and each difference of 2^9
+        // beside that of its own rounding. The determinant is a sum of six products of three differences, one along each
+        // axis; with all errors it lies between the products of what they are at most with and without them.
+        const ERROR: f64 = 512.0;
+        let w = p - self.corner;
+        let value = self.normal.dot(w);
+        let most = self.reach.max(w.abs());
+        let with_error = most + Vec3::splat(ERROR);
+        let spread = 6.0 * (with_error.x * with_error.y * with_error.z - most.x * most.y * most.z);
+        let bound = 2.0 * spread + 64.0 * f64::EPSILON * with_error.x * with_error.y * with_error.z;
+        if value.abs() > bound { Some(if value > 0.0 { 1 } else { -1 }) } else { None }
+    }
 }
 
 fn all_on_one_side(sides: [i32; 3]) -> bool {
@@ -152,16 +389,14 @@ fn all_on_one_side(sides: [i32; 3]) -> bool {
 }
 
 /// Whether two coplanar triangles are neighbours across an edge that they lie on different sides of, facing one way.
-fn are_unfolded_neighbours(scene: &Scene, t: u32, s: u32) -> bool {
+fn are_unfolded_neighbours(scene: &Scene<'_>, t: u32, s: u32) -> bool {
     (3 * t..3 * t + 3).any(|half_edge| {
         let twin = scene.twins[half_edge as usize];
-        twin / 3 == s && twin != Topology::NONE && {
-            let corner =
-                |h: u32, ahead: u32| scene.triangles[h as usize / 3].corners[((h % 3 + ahead) % 3) as usize];
-            let (a, b) = (corner(half_edge, 0), corner(half_edge, 1));
+        twin / 3 == s && twin != NONE && {
+            let [a, b] = scene.ends(half_edge);
             (0..3).any(|axis| {
                 let side = |c: PointId| scene.points().orientation(a, b, c, axis);
-                side(corner(half_edge, 2)) * side(corner(twin, 2)) < 0
+                side(scene.opposite(half_edge)) * side(scene.opposite(twin)) < 0
             })
         }
     })
@@ -169,9 +404,9 @@ fn are_unfolded_neighbours(scene: &Scene, t: u32, s: u32) -> bool {
 
 /// A quick sign that two triangles have nothing in common but a corner at one place, or the edge they are neighbours
 /// across: apart from those, one lies strictly on one side of the other's plane.
-fn meet_only_at_shared_corners(scene: &Scene, [t, s]: [u32; 2], sides: [[i32; 3]; 2]) -> bool {
+fn meet_only_at_shared_corners(scene: &Scene<'_>, [t, s]: [u32; 2], sides: [[i32; 3]; 2]) -> bool {
     [(t, s, sides[0]), (s, t, sides[1])].into_iter().any(|(triangle, other, sides)| {
-        let corners = scene.triangles[triangle as usize].corners;
+        let corners = scene.corners[triangle as usize];
         let mut on_plane = (0..3).filter(|&i| sides[i] == 0).map(|i| corners[i]);
         !(sides.contains(&1) && sides.contains(&-1))
             && on_plane
@@ -182,45 +417,12 @@ fn meet_only_at_shared_corners(scene: &Scene, [t, s]: [u32; 2], sides: [[i32; 3]
 
 /// Whether a contact is just a corner at one place, or the edge across which the two are neighbours. Edges at one place
 /// that are not joined by index are no such edge: surfaces may pass through each other there.
-fn is_shared(scene: &Scene, [t, s]: [u32; 2], ends: [PointId; 2]) -> bool {
-    let corners = scene.triangles[s as usize].corners;
-    let side = |half_edge: u32| {
-        let own = scene.triangles[t as usize].corners;
-        [own[half_edge as usize % 3], own[(half_edge as usize + 1) % 3]]
-    };
+fn is_shared(scene: &Scene<'_>, [t, s]: [u32; 2], ends: [PointId; 2]) -> bool {
     if ends[0] == ends[1] {
-        return corners.contains(&ends[0]) && scene.triangles[t as usize].corners.contains(&ends[0]);
+        return [t, s].iter().all(|&triangle| scene.corners[triangle as usize].contains(&ends[0]));
     }
     (3 * t..3 * t + 3).any(|half_edge| {
         let twin = scene.twins[half_edge as usize];
-        twin != Topology::NONE && twin / 3 == s && side(half_edge).iter().all(|end| ends.contains(end))
+        twin != NONE && twin / 3 == s && scene.ends(half_edge).iter().all(|end| ends.contains(end))
     })
-}
-
-/// Where a triangle that is not all on one side of a plane meets it: the two ends, in order; equal for a point.
-fn section(scene: &mut Scene, triangle: u32, sides: [i32; 3], plane: &Plane) -> [PointId; 2] {
-    let corners = scene.triangles[triangle as usize].corners;
-    let mut ends: [Option<PointId>; 2] = [None; 2];
-    let mut add = |end: PointId| match ends[0] {
-        None => ends[0] = Some(end),
-        Some(_) => ends[1] = Some(end),
-    };
-    for i in 0..3 {
-        let j = (i + 1) % 3;
-        if sides[i] == 0 {
-            add(corners[i]);
-        }
-        if sides[i] * sides[j] < 0 {
-            add(scene.places.points.crossing(corners[i], corners[j], plane));
-        }
-    }
-    let first = ends[0].expect("the triangle meets the plane");
-    let second = ends[1].unwrap_or(first);
-    if along(scene, first, second) == Ordering::Greater { [second, first] } else { [first, second] }
-}
-
-/// Orders points of one line along it.
-fn along(scene: &Scene, a: PointId, b: PointId) -> Ordering {
-    let by = |axis: usize| scene.points().compare(a, b, axis);
-    by(0).then_with(|| by(1)).then_with(|| by(2))
 }

@@ -18,18 +18,27 @@
 //! Nehring-Wirxel, Kobbelt 2022) in its winding vectors, and differs from them in working plane by plane.
 
 mod assemble;
+mod body;
 mod carriers;
 mod contacts;
+mod leave;
+mod operand;
+mod pairs;
 mod ray;
 mod regions;
 mod scene;
+mod strategy;
 mod tree;
+mod world;
 
-pub use scene::Operand;
+pub use operand::Operand;
 pub use tree::{Op, Tree};
 
-use crate::mesh::{Defects, Solid};
+use crate::mesh::{Defects, Mesh, Solid, Topology};
+use crate::polygon::exact::Snapped;
+use body::Body;
 use std::fmt;
+use world::World;
 
 /// What a boolean hands back.
 #[derive(Clone, Debug, Default)]
@@ -114,28 +123,93 @@ pub fn evaluate<'a, T>(tree: &Tree, operands: &[T]) -> Result<Combined, BooleanE
 where
     T: Copy + Into<Operand<'a>>,
 {
-    evaluate_on_grid(tree, operands, 0.0)
+    evaluate_with(tree, operands, &Options::default())
 }
 
-/// [`evaluate`] with all coordinates first rounded to multiples of a power of two that is at most `resolution`, so that
-/// parts which were meant to be flush, and miss each other by rounding errors, are.
-///
-/// A resolution finer than that of [`evaluate`], 0 or less or NaN changes nothing. Vertices that do not meet another
-/// operand keep their positions all the same.
+/// How a boolean is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// All coordinates are first rounded to multiples of a power of two that is at most this, in model units, so that
+    /// parts which were meant to be flush, and miss each other by rounding errors, are. 0 or less, NaN, and what is finer
+    /// than the lattice of [`evaluate`] change nothing. Vertices that do not meet another operand keep their positions
+    /// all the same.
+    pub resolution: f64,
+    /// In which steps. They change time and memory; of the result no more than how flat faces are triangulated.
+    pub steps: Steps,
+}
+
+/// In which steps an expression is evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Steps {
+    /// One arrangement where few operands meet at any one place, group by group where many overlap.
+    #[default]
+    Measured,
+    /// One arrangement of all operands.
+    Once,
+    /// One arrangement for each operation on two operands.
+    Pairs,
+}
+
+/// [`evaluate`] with options.
 ///
 /// # Errors
 /// As [`evaluate`].
-pub fn evaluate_on_grid<'a, T>(tree: &Tree, operands: &[T], resolution: f64) -> Result<Combined, BooleanError>
+pub fn evaluate_with<'a, T>(tree: &Tree, operands: &[T], options: &Options) -> Result<Combined, BooleanError>
 where
     T: Copy + Into<Operand<'a>>,
 {
     let operands: Vec<Operand<'a>> = operands.iter().map(|&operand| operand.into()).collect();
-    check(tree, &operands)?;
-    let mut scene = scene::Scene::new(&operands, resolution);
+    if let Some(index) = tree.last_operand().filter(|&last| last >= operands.len()) {
+        return Err(BooleanError::NoSuchOperand { index, count: operands.len() });
+    }
+    let (world, bodies) = enter(&operands, options.resolution)?;
+    let (world, body) = strategy::evaluate(world, bodies, tree, options.steps);
+    Ok(world.solid_of(body))
+}
+
+/// Puts all operands on the finest lattice for them, or on one as coarse as `resolution` allows.
+fn enter<'a>(operands: &[Operand<'a>], resolution: f64) -> Result<(World<'a>, Vec<Body>), BooleanError> {
+    let closed = operands.iter().enumerate().map(|(i, operand)| topology_of(i, operand));
+    let topologies: Vec<Topology> = closed.collect::<Result<_, _>>()?;
+    let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
+    let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let mut world = World::new(Snapped::new(largest, resolution));
+    world.places.points.reserve(operands.iter().map(|operand| operand.mesh.positions.len()).sum());
+    world.labels = operands.iter().map(|operand| operand.labels).collect();
+    let enter = |(i, (operand, topology))| Body::of_operand(&mut world, i, operand, &topology);
+    let bodies = (0..).zip(operands.iter().zip(topologies)).map(enter).collect();
+    Ok((world, bodies))
+}
+
+/// The topology of an operand, which must bound a volume.
+fn topology_of(index: usize, operand: &Operand<'_>) -> Result<Topology, BooleanError> {
+    let Mesh { positions, triangles } = operand.mesh;
+    let is_sound = |&[a, b, c]: &[u32; 3]| {
+        a != b && b != c && c != a && [a, b, c].iter().all(|&v| (v as usize) < positions.len())
+    };
+    let simple = operand.checked || (triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()));
+    if simple {
+        let topology = Topology::new(triangles);
+        if operand.checked || topology.is_closed() {
+            return Ok(topology);
+        }
+    }
+    // What is not that simple may be closed all the same.
+    let defects = Defects::of(operand.mesh);
+    if defects.is_closed() {
+        Ok(Topology::new(triangles))
+    } else {
+        Err(BooleanError::NotClosed { operand: index, defects: Box::new(defects) })
+    }
+}
+
+/// Evaluates an expression of bodies in one arrangement.
+fn arrange<'a>(world: World<'a>, bodies: Vec<Body>, tree: &Tree) -> (World<'a>, Body) {
+    let mut scene = scene::Scene::new(world, bodies);
     let contacts = contacts::find(&mut scene);
     let carriers = carriers::cut(&mut scene, contacts);
     let regions = regions::classify(&scene, &carriers, tree);
-    Ok(assemble::assemble(&scene, &carriers, &regions))
+    assemble::assemble(scene, carriers, &regions)
 }
 
 /// Where `a` or `b` is.
@@ -160,17 +234,4 @@ pub fn symmetric_difference(a: &Solid, b: &Solid) -> Combined {
 
 fn pair(op: Op, a: &Solid, b: &Solid) -> Combined {
     evaluate(&Tree::flat(op, 2), &[a, b]).expect("solids are closed")
-}
-
-fn check(tree: &Tree, operands: &[Operand<'_>]) -> Result<(), BooleanError> {
-    if let Some(index) = tree.last_operand().filter(|&last| last >= operands.len()) {
-        return Err(BooleanError::NoSuchOperand { index, count: operands.len() });
-    }
-    for (index, operand) in operands.iter().enumerate().filter(|(_, operand)| !operand.checked) {
-        let defects = Defects::of(operand.mesh);
-        if !defects.is_closed() {
-            return Err(BooleanError::NotClosed { operand: index, defects: Box::new(defects) });
-        }
-    }
-    Ok(())
 }

@@ -3,7 +3,7 @@
 //! The ray runs along +z. It is the ray that is moved, by (e, e^2) with e as small as it takes, and never the geometry, so
 //! it meets no edge and no vertex.
 
-use super::scene::{Member, Scene};
+use super::scene::Scene;
 use crate::math::{Aabb, Vec3};
 use crate::numeric::Wide;
 use crate::polygon::exact::{Plane, PointId, Points, Site};
@@ -17,19 +17,30 @@ pub(super) struct Anchor {
 
 /// Casts rays through a scene.
 pub(super) struct RayCaster<'a> {
-    scene: &'a Scene,
+    scene: &'a Scene<'a>,
     boxes: Vec<Aabb>,
     members: Bvh,
-    /// The triangles of each operand by place, made when a ray first comes near it.
-    triangles: Vec<Option<(Vec<Aabb>, Bvh)>>,
+    finders: Vec<Finder>,
 }
 
+/// Finds the triangles of a member near a ray.
+#[derive(Default)]
+struct Finder {
+    /// How many rays came near the member.
+    rays: usize,
+    /// Its triangles by place.
+    triangles: Option<(Vec<Aabb>, Bvh)>,
+}
+
+/// A tree over triangles costs about as much as looking at all of them this often.
+const RAYS_WITHOUT_TREE: usize = 8;
+
 impl<'a> RayCaster<'a> {
-    pub(super) fn new(scene: &'a Scene) -> RayCaster<'a> {
+    pub(super) fn new(scene: &'a Scene<'a>) -> RayCaster<'a> {
         let boxes: Vec<Aabb> = scene.members.iter().map(|member| member.bounds).collect();
         let members = Bvh::new(&boxes);
-        let triangles = scene.members.iter().map(|_| None).collect();
-        RayCaster { scene, boxes, members, triangles }
+        let finders = scene.members.iter().map(|_| Finder::default()).collect();
+        RayCaster { scene, boxes, members, finders }
     }
 
     /// Winding numbers right beside the anchor's centroid, and whether that is the side to which its normal points.
@@ -51,11 +62,16 @@ impl<'a> RayCaster<'a> {
         (side == Some(1), winding)
     }
 
-    /// How often an operand winds around the start of the ray.
+    /// How often a member winds around the start of the ray.
     fn count(&mut self, member: u32, start: &Start, column: Aabb) -> i32 {
-        let scene = self.scene;
-        let Member { triangles, .. } = &scene.members[member as usize];
-        let (boxes, bvh) = self.triangles[member as usize].get_or_insert_with(|| {
+        let (scene, finder) = (self.scene, &mut self.finders[member as usize]);
+        let triangles = scene.members[member as usize].triangles.clone();
+        finder.rays += 1;
+        if finder.rays <= RAYS_WITHOUT_TREE {
+            let near = triangles.filter(|&t| scene.bounds_of(t).touches(column));
+            return near.map(|t| start.crossing(scene, t)).sum();
+        }
+        let (boxes, bvh) = finder.triangles.get_or_insert_with(|| {
             let boxes: Vec<Aabb> = triangles.clone().map(|t| scene.bounds_of(t)).collect();
             let bvh = Bvh::new(&boxes);
             (boxes, bvh)
@@ -106,10 +122,11 @@ impl Start {
     }
 
     /// 1 where the ray leaves through a triangle, -1 where it enters, 0 where it passes by.
-    fn crossing(&self, scene: &Scene, triangle: u32) -> i32 {
-        let [a, b, c] = scene.sites_of(triangle);
-        let turn = self.turn(a, b);
-        if turn == 0 || self.turn(b, c) != turn || self.turn(c, a) != turn {
+    fn crossing(&self, scene: &Scene<'_>, triangle: u32) -> i32 {
+        let [a, b, c] = scene.corners[triangle as usize];
+        let points = scene.points();
+        let turn = self.turn(points, a, b);
+        if turn == 0 || self.turn(points, b, c) != turn || self.turn(points, c, a) != turn {
             return 0;
         }
         // The triangle faces up when it runs counter-clockwise around the ray; the start is below it when it is behind.
@@ -118,21 +135,43 @@ impl Start {
     }
 
     /// 1 when the moved ray passes to the left of the segment seen from above; 0 only for an upright segment.
-    fn turn(&self, a: Site, b: Site) -> i32 {
-        let along = [b[0] - a[0], b[1] - a[1]];
-        let [ex, ey] = along.map(|e| e as f64);
-        let place = [0, 1].map(|i| self.rounded[i] - a[i] as f64);
-        let (left, right) = (ex * place[1], ey * place[0]);
-        let slack = |i: usize| self.error + 4.0 * UNIT * (self.rounded[i].abs() + (a[i] as f64).abs());
-        let bound = 2.0 * (ex.abs() * slack(1) + ey.abs() * slack(0));
+    fn turn(&self, points: &Points, a: PointId, b: PointId) -> i32 {
+        let (from, to) = (points.rounded(a), points.rounded(b));
+        let (along, place) = (to - from, self.rounded - from);
+        let (left, right) = (along.x * place.y, along.y * place.x);
+        // Bounds on the errors of `along` and `place`, and from them on that of the difference.
+        let slack = |i: usize| self.error + 2.0 * UNIT * (self.rounded[i].abs() + from[i].abs() + to[i].abs());
+        let (dx, dy) = (slack(0), slack(1));
+        let (along_size, place_size) = (along.abs(), place.abs());
+        let error = (along_size.x + place_size.x + dx) * dy + (along_size.y + place_size.y + dy) * dx;
+        let bound = 2.0 * error + 4.0 * UNIT * (left.abs() + right.abs());
         if (left - right).abs() > bound {
             return if left > right { 1 } else { -1 };
         }
-        let offset = |i: usize| self.numerators[i].minus(&Wide::<1>::from(a[i]).times(&self.denominator));
-        let product = |e: i64, offset: Numerator| -> Wide<20> { Wide::<1>::from(e).times(&offset) };
-        let sign = product(along[0], offset(1)).minus(&product(along[1], offset(0))).signum();
+        let sign = match (points.as_site(a), points.as_site(b)) {
+            (Some(from), Some(to)) => self.turn_about_sites(from, to),
+            _ => self.turn_about_fractions(points, a, b),
+        };
         // The move changes the value by -ey e + ex e^2.
-        [sign, -along[1].signum() as i32, along[0].signum() as i32].into_iter().find(|&s| s != 0).unwrap_or(0)
+        let [ex, ey] = [0, 1].map(|axis| points.compare(b, a, axis) as i32);
+        [sign, -ey, ex].into_iter().find(|&s| s != 0).unwrap_or(0)
+    }
+
+    fn turn_about_sites(&self, from: Site, to: Site) -> i32 {
+        let offset = |i: usize| self.numerators[i].minus(&Wide::<1>::from(from[i]).times(&self.denominator));
+        let product = |i: usize, j: usize| -> Wide<20> { Wide::<1>::from(to[i] - from[i]).times(&offset(j)) };
+        product(0, 1).minus(&product(1, 0)).signum()
+    }
+
+    /// The determinant of the three points' first two numerators and denominators.
+    fn turn_about_fractions(&self, points: &Points, a: PointId, b: PointId) -> i32 {
+        let ((a, aw), (b, bw)) = (points.homogeneous(a), points.homogeneous(b));
+        let start = &self.numerators;
+        let ab: Wide<14> = a[0].times::<7, 14>(&b[1]).minus(&a[1].times(&b[0]));
+        let bs: Wide<26> = b[0].times::<19, 26>(&start[1]).minus(&b[1].times(&start[0]));
+        let sa: Wide<26> = start[0].times::<7, 26>(&a[1]).minus(&start[1].times(&a[0]));
+        let sum: Wide<32> = ab.times(&self.denominator);
+        sum.plus(&bs.times(&aw)).plus(&sa.times(&bw)).signum()
     }
 
     /// On which side of a plane the start lies.

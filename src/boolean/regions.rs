@@ -3,8 +3,8 @@
 use super::carriers::{Carrier, Carriers};
 use super::ray::{Anchor, RayCaster};
 use super::scene::Scene;
-use super::tree::Tree;
-use crate::mesh::Topology;
+use super::tree::{Judge, Tree};
+use super::world::NONE;
 use crate::numeric::DisjointSets;
 use crate::polygon::exact::{Boundary, Plane, PointId, Points, triangulate};
 use std::cmp::Ordering;
@@ -60,7 +60,7 @@ impl Regions {
 }
 
 /// Finds regions and their winding numbers, and evaluates the expression in each.
-pub(super) fn classify(scene: &Scene, carriers: &Carriers, tree: &Tree) -> Regions {
+pub(super) fn classify(scene: &Scene<'_>, carriers: &Carriers, tree: &Tree) -> Regions {
     let patches = find_patches(scene, carriers);
     let (mut fins, planes) = gather_fins(scene, carriers, &patches);
     fins.sort_by_key(|fin| fin.ends);
@@ -71,7 +71,8 @@ pub(super) fn classify(scene: &Scene, carriers: &Carriers, tree: &Tree) -> Regio
     let (region_of_side, region_count) = join_regions(&fins, &edges, patches.cell_count);
     let links = links(scene, carriers, &patches, &region_of_side);
     let winding = propagate(scene, carriers, &patches, &links, region_count as usize);
-    let inside: Vec<bool> = winding.iter().map(|winding| tree.holds(winding)).collect();
+    let mut judge = Judge::new(tree, scene.members.len());
+    let inside: Vec<bool> = winding.iter().map(|winding| judge.holds(winding)).collect();
     let inside = (0..patches.cell_count as usize)
         .map(|cell| [2 * cell, 2 * cell + 1].map(|side| inside[region_of_side[side] as usize]))
         .collect();
@@ -86,12 +87,12 @@ struct Patches {
     cell_count: u32,
 }
 
-fn find_patches(scene: &Scene, carriers: &Carriers) -> Patches {
-    let count = scene.triangles.len();
+fn find_patches(scene: &Scene<'_>, carriers: &Carriers) -> Patches {
+    let count = scene.corners.len();
     let touched = &carriers.touched;
     let mut sets = DisjointSets::new(count);
     for (half_edge, &twin) in scene.twins.iter().enumerate() {
-        if twin != Topology::NONE && !touched[half_edge / 3] && !touched[twin as usize / 3] {
+        if twin != NONE && !touched[half_edge / 3] && !touched[twin as usize / 3] {
             sets.join(half_edge as u32 / 3, twin / 3);
         }
     }
@@ -111,7 +112,7 @@ fn find_patches(scene: &Scene, carriers: &Carriers) -> Patches {
 }
 
 /// The fins of all covered cells of carriers, and those of untouched triangles along touched ones.
-fn gather_fins(scene: &Scene, carriers: &Carriers, patches: &Patches) -> (Vec<Fin>, Vec<Plane>) {
+fn gather_fins(scene: &Scene<'_>, carriers: &Carriers, patches: &Patches) -> (Vec<Fin>, Vec<Plane>) {
     let (mut fins, mut planes) = (Vec::new(), Vec::new());
     for (index, carrier) in (0_u32..).zip(&carriers.carriers) {
         planes.push(*carrier.chart.plane());
@@ -132,7 +133,7 @@ fn gather_fins(scene: &Scene, carriers: &Carriers, patches: &Patches) -> (Vec<Fi
         if carriers.touched[triangle as usize] || !carriers.touched[twin as usize / 3] {
             continue;
         }
-        let corners = scene.triangles[triangle as usize].corners;
+        let corners = scene.corners[triangle as usize];
         let (from, to) = (corners[half_edge as usize % 3], corners[(half_edge as usize + 1) % 3]);
         fins.push(Fin {
             ends: [from.min(to), from.max(to)],
@@ -224,14 +225,14 @@ struct Link {
     gain: Vec<(u32, i32)>,
 }
 
-fn links(scene: &Scene, carriers: &Carriers, patches: &Patches, region_of_side: &[u32]) -> Vec<Link> {
+fn links(scene: &Scene<'_>, carriers: &Carriers, patches: &Patches, region_of_side: &[u32]) -> Vec<Link> {
     let link = |cell: u32, gain: Vec<(u32, i32)>| {
         let [front, back] = [2 * cell, 2 * cell + 1].map(|side| region_of_side[side as usize]);
         Link { front, back, cell, gain }
     };
     let of_patches = (0_u32..)
         .zip(&patches.first_triangle)
-        .map(|(i, &t)| link(carriers.cell_count + i, vec![(scene.triangles[t as usize].operand, 1)]));
+        .map(|(i, &t)| link(carriers.cell_count + i, vec![(scene.member_of(t), 1)]));
     let of_carriers = carriers.carriers.iter().flat_map(|carrier| {
         let covered = (0_u32..).zip(&carrier.overlay.coverage).filter(|(_, cover)| !cover.is_empty());
         covered.map(|(cell, cover)| link(carrier.first_cell + cell, cover.clone()))
@@ -241,7 +242,7 @@ fn links(scene: &Scene, carriers: &Carriers, patches: &Patches, region_of_side: 
 
 /// Winding numbers of all regions: one ray for each connected set of them, then along the links.
 fn propagate(
-    scene: &Scene,
+    scene: &Scene<'_>,
     carriers: &Carriers,
     patches: &Patches,
     links: &[Link],
@@ -298,10 +299,10 @@ fn after(winding: &[(u32, i32)], gain: &[(u32, i32)], sign: i32) -> Vec<(u32, i3
 }
 
 /// A triangle inside a cell.
-fn anchor(scene: &Scene, carriers: &Carriers, patches: &Patches, cell: u32) -> Anchor {
+fn anchor(scene: &Scene<'_>, carriers: &Carriers, patches: &Patches, cell: u32) -> Anchor {
     if let Some(patch) = cell.checked_sub(carriers.cell_count) {
         let triangle = patches.first_triangle[patch as usize];
-        let corners = scene.triangles[triangle as usize].corners;
+        let corners = scene.corners[triangle as usize];
         return Anchor { corners, plane: scene.plane_through(triangle) };
     }
     let home = carriers.carriers.partition_point(|carrier| carrier.first_cell <= cell) - 1;

@@ -1,189 +1,178 @@
-//! Operands on one lattice.
+//! The bodies of one arrangement, side by side.
 
+use super::Birth;
+use super::body::Body;
+use super::world::{Facing, NONE, World};
 use crate::math::Aabb;
-use crate::mesh::{Mesh, Solid, Topology};
-use crate::polygon::exact::{Plane, PointId, Points, Site, Snapped};
-use std::collections::HashMap;
+use crate::polygon::exact::{Chart, Line, Plane, PointId, Points};
+use std::ops::Range;
 
-/// An operand of a boolean: a mesh and what is known of it.
-#[derive(Clone, Copy, Debug)]
-pub struct Operand<'a> {
-    pub(super) mesh: &'a Mesh,
-    /// Whether it is known to be closed.
-    pub(super) checked: bool,
-    /// Whether it is known not to cross itself.
-    embedded: bool,
-    material: u32,
-}
-
-impl<'a> Operand<'a> {
-    /// The same operand with a label: coplanar faces of operands with different labels are not merged, so that each
-    /// triangle of the result has one label. All operands have label 0 unless told otherwise.
-    #[must_use]
-    pub fn with_material(self, material: u32) -> Operand<'a> {
-        Operand { material, ..self }
-    }
-}
-
-impl<'a> From<&'a Mesh> for Operand<'a> {
-    fn from(mesh: &'a Mesh) -> Self {
-        Operand { mesh, checked: false, embedded: false, material: 0 }
-    }
-}
-
-impl<'a> From<&'a Solid> for Operand<'a> {
-    fn from(solid: &'a Solid) -> Self {
-        Operand { mesh: solid.mesh(), checked: true, embedded: solid.is_embedded(), material: 0 }
-    }
-}
-
-/// A triangle of an operand.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Triangle {
-    pub(super) corners: [PointId; 3],
-    pub(super) operand: u32,
-    /// Its index in the operand.
-    pub(super) index: u32,
-}
-
-/// What is known of an operand in the scene.
+/// What is known of a body in the scene.
 #[derive(Clone, Debug)]
 pub(super) struct Member {
-    /// Its triangles in [`Scene::triangles`].
-    pub(super) triangles: std::ops::Range<u32>,
+    /// Its triangles in the scene.
+    pub(super) triangles: Range<u32>,
     pub(super) bounds: Aabb,
     pub(super) embedded: bool,
-    pub(super) material: u32,
 }
 
-/// All operands together. Half-edge `3 t + i` is side `i` of triangle `t`.
+/// All bodies together. Half-edge `3 t + i` is side `i` of triangle `t`.
 #[derive(Debug)]
-pub(super) struct Scene {
-    pub(super) places: Snapped,
-    pub(super) triangles: Vec<Triangle>,
-    /// The other half-edge of each edge, or [`Topology::NONE`] where there is other than one.
+pub(super) struct Scene<'a> {
+    pub(super) world: World<'a>,
+    pub(super) corners: Vec<[PointId; 3]>,
+    pub(super) births: Vec<Birth>,
     pub(super) twins: Vec<u32>,
     pub(super) members: Vec<Member>,
-    /// Planes of triangles that were asked for, each once for all triangles in it.
-    planes: PlaneTable,
-    /// For each triangle, its own plane (its normal outward) once it was asked for.
-    own_planes: Vec<Option<Box<Plane>>>,
+    facings: Vec<Facing>,
+    lines: Vec<u32>,
+    /// For each triangle, its own plane in `own_planes` once it was asked for, or [`NONE`].
+    own: Vec<u32>,
+    own_planes: Vec<Plane>,
 }
 
-impl Scene {
-    /// Snaps all operands to the finest lattice for them, or to one as coarse as `resolution` allows. Triangles without area on the lattice are dropped.
-    pub(super) fn new(operands: &[Operand<'_>], resolution: f64) -> Scene {
-        let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
-        let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+impl<'a> Scene<'a> {
+    /// Puts bodies side by side; the member of each has its index.
+    pub(super) fn new(world: World<'a>, bodies: Vec<Body>) -> Scene<'a> {
         let mut scene = Scene {
-            places: Snapped::new(largest, resolution),
-            triangles: Vec::new(),
+            world,
+            corners: Vec::new(),
+            births: Vec::new(),
             twins: Vec::new(),
-            members: Vec::new(),
-            planes: PlaneTable::default(),
+            members: Vec::with_capacity(bodies.len()),
+            facings: Vec::new(),
+            lines: Vec::new(),
+            own: Vec::new(),
             own_planes: Vec::new(),
         };
-        for (index, operand) in (0..).zip(operands) {
-            scene.add(index, operand);
+        for body in bodies {
+            scene.add(body);
         }
-        scene.own_planes.resize_with(scene.triangles.len(), || None);
+        scene.own = vec![NONE; scene.corners.len()];
         scene
     }
 
-    fn add(&mut self, index: u32, operand: &Operand<'_>) {
-        let mesh = operand.mesh;
-        let ids: Vec<PointId> = mesh.positions.iter().map(|&p| self.places.add(p)).collect();
-        let first = self.triangles.len() as u32;
-        let mut slots = vec![Topology::NONE; mesh.triangles.len()];
-        for (t, triangle) in (0_u32..).zip(&mesh.triangles) {
-            let corners = triangle.map(|v| ids[v as usize]);
-            if self.has_area(corners) {
-                slots[t as usize] = self.triangles.len() as u32;
-                self.triangles.push(Triangle { corners, operand: index, index: t });
-            }
+    fn add(&mut self, body: Body) {
+        let first = self.corners.len() as u32;
+        let shift = |twin: u32| if twin == NONE { NONE } else { twin + 3 * first };
+        let end = first + body.len() as u32;
+        self.members.push(Member { triangles: first..end, bounds: body.bounds, embedded: body.embedded });
+        if !body.facings.is_empty() {
+            self.facings.resize(first as usize, Facing::UNKNOWN);
+            self.facings.extend(body.facings);
         }
-        let topology = Topology::new(&mesh.triangles);
-        for t in (0..mesh.triangles.len() as u32).filter(|&t| slots[t as usize] != Topology::NONE) {
-            self.twins.extend((3 * t..3 * t + 3).map(|half_edge| match topology.twin(half_edge) {
-                Topology::NONE => Topology::NONE,
-                twin => match slots[twin as usize / 3] {
-                    Topology::NONE => Topology::NONE,
-                    slot => 3 * slot + twin % 3,
-                },
-            }));
+        if !body.lines.is_empty() {
+            self.lines.resize(3 * first as usize, NONE);
+            self.lines.extend(body.lines);
         }
-        let triangles = first..self.triangles.len() as u32;
-        let whole = triangles.len() == mesh.triangles.len();
-        let corners = self.triangles[first as usize..].iter().flat_map(|t| t.corners);
-        let bounds = Aabb::of(corners.map(|p| self.points().rounded(p)));
-        let material = operand.material;
-        self.members.push(Member { triangles, bounds, embedded: operand.embedded && whole, material });
+        if first == 0 {
+            (self.corners, self.births, self.twins) = (body.corners, body.births, body.twins);
+        } else {
+            self.corners.extend(body.corners);
+            self.births.extend(body.births);
+            self.twins.extend(body.twins.into_iter().map(shift));
+        }
     }
 
-    /// The points of the scene.
+    /// The points of the world.
     pub(super) fn points(&self) -> &Points {
-        &self.places.points
+        self.world.points()
     }
 
     /// The box of a triangle, in lattice units.
     pub(super) fn bounds_of(&self, triangle: u32) -> Aabb {
-        Aabb::of(self.triangles[triangle as usize].corners.map(|p| self.points().rounded(p)))
+        Aabb::of(self.corners[triangle as usize].map(|p| self.points().rounded(p)))
     }
 
-    /// The integer corners of a triangle.
-    pub(super) fn sites_of(&self, triangle: u32) -> [Site; 3] {
-        self.triangles[triangle as usize]
-            .corners
-            .map(|p| self.points().as_site(p).expect("vertices of operands are sites"))
+    /// The member that a triangle belongs to.
+    pub(super) fn member_of(&self, triangle: u32) -> u32 {
+        self.members.partition_point(|member| member.triangles.end <= triangle) as u32
     }
 
-    fn has_area(&self, corners: [PointId; 3]) -> bool {
-        (0..3).any(|axis| self.points().orientation(corners[0], corners[1], corners[2], axis) != 0)
+    /// The ends of a half-edge.
+    pub(super) fn ends(&self, half_edge: u32) -> [PointId; 2] {
+        let corners = self.corners[half_edge as usize / 3];
+        [corners[half_edge as usize % 3], corners[(half_edge as usize + 1) % 3]]
+    }
+
+    /// The corner of a half-edge's triangle that the half-edge does not touch.
+    pub(super) fn opposite(&self, half_edge: u32) -> PointId {
+        self.corners[half_edge as usize / 3][(half_edge as usize + 2) % 3]
     }
 
     /// The plane of a triangle, its normal outward.
-    pub(super) fn own_plane(&mut self, triangle: u32) -> &Plane {
-        if self.own_planes[triangle as usize].is_none() {
-            self.own_planes[triangle as usize] = Some(Box::new(self.plane_through(triangle)));
+    pub(super) fn own_plane(&mut self, triangle: u32) -> Plane {
+        let t = triangle as usize;
+        if self.own[t] == NONE {
+            self.own[t] = self.own_planes.len() as u32;
+            self.own_planes.push(self.plane_through(triangle));
         }
-        self.own_planes[triangle as usize].as_ref().expect("it was just made")
+        self.own_planes[self.own[t] as usize]
     }
 
     /// [`Scene::own_plane`] without remembering it.
     pub(super) fn plane_through(&self, triangle: u32) -> Plane {
-        let [a, b, c] = self.sites_of(triangle);
-        Plane::through(a, b, c).expect("the triangle has area")
-    }
-
-    /// The plane that a triangle shares with all coplanar ones, and whether its normal is outward.
-    pub(super) fn shared_plane(&mut self, triangle: u32) -> (u32, bool) {
-        let own = *self.own_plane(triangle);
-        self.planes.find(&own)
-    }
-
-    /// A plane by the index that [`Scene::shared_plane`] gave.
-    pub(super) fn plane(&self, index: u32) -> &Plane {
-        &self.planes.planes[index as usize]
-    }
-}
-
-/// Planes, each once, with their longest normal component positive.
-#[derive(Debug, Default)]
-struct PlaneTable {
-    planes: Vec<Plane>,
-    by_key: HashMap<[u64; 4], Vec<u32>>,
-}
-
-impl PlaneTable {
-    fn find(&mut self, plane: &Plane) -> (u32, bool) {
-        let outward = plane.normal_sign(plane.main_axis()) > 0;
-        let known = self.by_key.entry(plane.key()).or_default();
-        if let Some(&index) = known.iter().find(|&&index| self.planes[index as usize].same_points(plane)) {
-            return (index, outward);
+        match self.facing(triangle) {
+            Some(facing) => self.world.outward_plane(facing),
+            None => {
+                let site = |p: PointId| self.points().as_site(p).expect("cut faces know their plane");
+                let [a, b, c] = self.corners[triangle as usize].map(site);
+                Plane::through(a, b, c).expect("the triangle has area")
+            }
         }
-        let index = self.planes.len() as u32;
-        known.push(index);
-        self.planes.push(if outward { *plane } else { plane.flipped() });
-        (index, outward)
+    }
+
+    /// The facing of a triangle, if it was asked for before or came with its body.
+    pub(super) fn facing(&self, triangle: u32) -> Option<Facing> {
+        self.facings.get(triangle as usize).and_then(|facing| facing.known())
+    }
+
+    /// The facing of a triangle, by the plane that all coplanar triangles share.
+    pub(super) fn shared_facing(&mut self, triangle: u32) -> Facing {
+        if let Some(facing) = self.facing(triangle) {
+            return facing;
+        }
+        let own = self.own_plane(triangle);
+        let facing = self.world.facing(&own);
+        if self.facings.len() < self.corners.len() {
+            self.facings.resize(self.corners.len(), Facing::UNKNOWN);
+        }
+        self.facings[triangle as usize] = facing;
+        facing
+    }
+
+    /// The line of the world that a half-edge came with, or [`NONE`].
+    pub(super) fn line_index(&self, half_edge: u32) -> u32 {
+        self.lines.get(half_edge as usize).copied().unwrap_or(NONE)
+    }
+
+    /// The line that a side of a face runs on, in the face's chart.
+    pub(super) fn line_of_side(&self, chart: &Chart, half_edge: u32) -> Line {
+        let line = match self.line_index(half_edge) {
+            NONE => {
+                let [from, to] = self.ends(half_edge);
+                chart.line_through(self.points(), from, to)
+            }
+            index => chart.line(&self.world.lines[index as usize]),
+        };
+        line.expect("sides have length")
+    }
+
+    /// Whether a face goes on in its plane across a half-edge of a triangle in the given plane, so that the edge is none
+    /// of the solid but only of its triangulation.
+    pub(super) fn goes_on(&self, half_edge: u32, plane: &Plane) -> bool {
+        let (twin, t) = (self.twins[half_edge as usize], half_edge / 3);
+        if twin == NONE || self.world.label(self.births[t as usize]) != self.world.label(self.births[twin as usize / 3]) {
+            return false;
+        }
+        if let (Some(here), Some(there)) = (self.facing(t), self.facing(twin / 3)) {
+            return here == there;
+        }
+        let across = self.opposite(twin);
+        plane.side(self.points(), across) == 0 && {
+            let ([a, b], axis) = (self.ends(half_edge), plane.main_axis());
+            let side = |c: PointId| self.points().orientation(a, b, c, axis);
+            side(across) == -side(self.opposite(half_edge))
+        }
     }
 }

@@ -53,8 +53,13 @@ struct Job {
 impl Job {
     fn new(args: &Args) -> Result<Job, Stop> {
         let source = Source::typed(&args.input);
-        if let Ok(Kind::Mesh(_)) = source.kind() {
-            let hint = "this is a mesh, not a script; see `ogee info` and `ogee boolean`";
+        let hint = match source.kind() {
+            Ok(Kind::Mesh(_)) => Some("this is a mesh, not a script; see `ogee info` and `ogee boolean`"),
+            Ok(Kind::Drawing) => Some("this is a drawing, not a script; see `ogee info` and `ogee plot`"),
+            Ok(Kind::Table | Kind::Points) => Some("these are data, not a script; see `ogee plot`"),
+            Ok(Kind::Script) | Err(_) => None,
+        };
+        if let Some(hint) = hint {
             return Err(Stop::about(source, hint));
         }
         let outputs = output::plan(&args.output, args.format)?;

@@ -3,6 +3,7 @@
 use super::stop::Stop;
 use crate::io as formats;
 use crate::io::Format;
+use crate::io::svg::Drawing;
 use crate::mesh::Mesh;
 use std::fmt;
 use std::fs;
@@ -25,7 +26,17 @@ pub(super) enum Kind {
     Script,
     /// A mesh.
     Mesh(Format),
+    /// An SVG drawing.
+    Drawing,
+    /// A table of numbers.
+    Table,
+    /// Lists of points in JSON.
+    Points,
 }
+
+/// Endings of files that hold plane things.
+const FLAT: [(&str, Kind); 4] =
+    [("svg", Kind::Drawing), ("csv", Kind::Table), ("tsv", Kind::Table), ("json", Kind::Points)];
 
 impl Source {
     /// What was typed, meant.
@@ -43,6 +54,10 @@ impl Source {
         if let Some(format) = Format::from_ending(&ending) {
             return Ok(Kind::Mesh(format));
         }
+        let flat = FLAT.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
+        if let Some(&(_, kind)) = flat {
+            return Ok(kind);
+        }
         let reason = check_file(path).err().unwrap_or_else(|| format!("unknown ending; {}", endings()));
         Err(Stop::about(self, reason))
     }
@@ -51,6 +66,12 @@ impl Source {
     pub(super) fn mesh(&self, format: Format) -> Result<Mesh, Stop> {
         let bytes = self.bytes().map_err(|error| Stop::about(self, error))?;
         formats::read_mesh(format, &bytes).map_err(|error| Stop::about(self, error))
+    }
+
+    /// The drawing in it.
+    pub(super) fn drawing(&self) -> Result<Drawing, Stop> {
+        let bytes = self.bytes().map_err(|error| Stop::about(self, error))?;
+        formats::svg::read(&bytes).map_err(|error| Stop::about(self, error))
     }
 
     /// All bytes of it.
@@ -77,7 +98,7 @@ impl fmt::Display for Source {
 
 /// The endings that are understood, as a sentence.
 pub(super) fn endings() -> String {
-    format!("scripts end in .scad, meshes in {}", mesh_endings())
+    format!("scripts end in .scad, meshes in {}, drawings in .svg", mesh_endings())
 }
 
 /// The endings of mesh files, as a list.
@@ -144,7 +165,7 @@ mod tests {
         assert_eq!(kind("a.SCAD").unwrap(), Kind::Script);
         assert_eq!(kind("-").unwrap(), Kind::Script);
         assert_eq!(kind("dir.scad/a.Stl").unwrap(), Kind::Mesh(Format::StlBinary));
-        let unknown = "Cargo.toml: unknown ending; scripts end in .scad, meshes in .obj, .stl, .off, .ply";
+        let unknown = "Cargo.toml: unknown ending; scripts end in .scad, meshes in .obj, .stl, .off, .ply, drawings in .svg";
         assert_eq!(kind("Cargo.toml").unwrap_err().text(), Some(unknown));
         assert_eq!(kind("src").unwrap_err().text(), Some("src: this is a folder, not a file"));
         assert_eq!(kind("a.step").unwrap_err().text(), Some("a.step: there is no such file"));

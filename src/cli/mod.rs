@@ -13,6 +13,7 @@ mod info;
 mod input;
 mod model;
 mod output;
+mod plot;
 mod render;
 mod settings;
 mod stop;
@@ -50,6 +51,7 @@ enum Command {
     Check(check::Args),
     Info(info::Args),
     Render(Box<render::Args>),
+    Plot(Box<plot::Args>),
     Boolean(boolean::Args),
     Builtins(builtins::Args),
 }
@@ -61,6 +63,7 @@ impl Command {
             Command::Check(args) => check::run(args, terminal),
             Command::Info(args) => info::run(args, terminal),
             Command::Render(args) => render::run(args, terminal),
+            Command::Plot(args) => plot::run(args, terminal),
             Command::Boolean(args) => boolean::run(args, terminal),
             Command::Builtins(args) => builtins::run(args),
         }

@@ -98,12 +98,15 @@ fn load(
 ) -> Result<(Mesh, Vec<Option<Color>>), Stop> {
     match args.format.map_or_else(|| source.kind(), |format| Ok(Kind::Mesh(format)))? {
         Kind::Mesh(format) => Ok((source.mesh(format)?, Vec::new())),
+        Kind::Drawing | Kind::Table | Kind::Points => {
+            Err(Stop::about(source, "this is flat; `ogee plot` draws it"))
+        }
         Kind::Script => {
             let built = model::build(source, &args.script, false, times, terminal)?;
             match built.shape {
                 Shape::Solid(solid) => Ok((solid.into_mesh(), built.colors)),
                 Shape::Region(_) => {
-                    let reason = "the script makes a plane region, which cannot be drawn; linear_extrude makes it a solid";
+                    let reason = "the script makes a plane region; `ogee plot` draws it, and linear_extrude makes it a solid";
                     Err(Stop::about(source, reason))
                 }
             }
@@ -183,7 +186,8 @@ fn crease(text: &str) -> Result<f64, String> {
     degrees.ok_or_else(|| "expected an angle from 0 to 180".to_owned())
 }
 
-fn color(text: &str) -> Result<[f32; 3], String> {
+/// A colour as `#rrggbb`.
+pub(super) fn color(text: &str) -> Result<[f32; 3], String> {
     let digits = text.strip_prefix('#').unwrap_or(text);
     let code = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6 && !digits.starts_with('+'));
     let code = code.ok_or("expected a colour as #rrggbb")?;

@@ -1,6 +1,7 @@
 //! Measures of what was made, for people and for programs.
 
 use crate::csg::Report;
+use crate::curve::{Bounds, CurveError, Path};
 use crate::math::{Aabb, Vec2};
 use crate::mesh::{Defects, Measures};
 use crate::polygon::Region;
@@ -69,6 +70,49 @@ impl Summary {
                 text
             }
         }
+    }
+}
+
+/// The measures of a path.
+pub(super) struct PathMeasures {
+    length: f64,
+    area: f64,
+    bounds: Option<Bounds<Vec2>>,
+    segments: usize,
+    closed: bool,
+}
+
+impl PathMeasures {
+    pub(super) fn of(path: &Path) -> Result<PathMeasures, CurveError> {
+        // No piece is shorter than the longer side of its box.
+        let sides = path.pieces().map(|piece| {
+            let Bounds { min, max } = piece.bounding_box();
+            (max - min).max_element()
+        });
+        let accuracy = (1e-14 * sides.sum::<f64>()).clamp(f64::MIN_POSITIVE, f64::MAX);
+        let area = path.area();
+        if !area.is_finite() {
+            return Err(CurveError::NotFinite { index: 0 });
+        }
+        Ok(PathMeasures {
+            length: path.length(accuracy)?.value,
+            area,
+            bounds: path.bounding_box(),
+            segments: path.pieces().count(),
+            closed: path.is_closed(),
+        })
+    }
+
+    /// All of them as an object; an empty path has no box.
+    pub(super) fn row(&self) -> Value {
+        let bounds = self.bounds.map(|Bounds { min, max }| [min.x, min.y, max.x, max.y]);
+        json!({
+            "length": self.length,
+            "area": self.area,
+            "box": bounds,
+            "segments": self.segments,
+            "closed": self.closed,
+        })
     }
 }
 

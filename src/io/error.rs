@@ -17,6 +17,13 @@ pub struct ReadError {
 pub enum Place {
     /// A line of a text, from 1.
     Line(usize),
+    /// A character of a line of a text, both from 1.
+    Character {
+        /// The line.
+        line: usize,
+        /// The character in it.
+        column: usize,
+    },
     /// A byte of a binary file, from 0.
     Byte(usize),
 }
@@ -62,6 +69,20 @@ pub enum Problem {
         /// What is not.
         what: &'static str,
     },
+    /// The text breaks the rules of its format.
+    Malformed {
+        /// What the parser says of it.
+        reason: String,
+    },
+    /// There is more of something than is read.
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many are read at most.
+        most: usize,
+    },
+    /// Coordinates that leave the range of `f64`.
+    OutOfRange,
 }
 
 impl ReadError {
@@ -95,6 +116,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Place::Line(line) => write!(f, "line {line}"),
+            Place::Character { line, column } => write!(f, "line {line}, column {column}"),
             Place::Byte(byte) => write!(f, "byte {byte}"),
         }
     }
@@ -114,6 +136,9 @@ impl fmt::Display for Problem {
             }
             Problem::TooLarge => write!(f, "more vertices or triangles than 32 bits can count"),
             Problem::Unsupported { what } => write!(f, "{what} cannot be read"),
+            Problem::Malformed { reason } => f.write_str(reason),
+            Problem::TooMany { what, most } => write!(f, "more than {most} {what}"),
+            Problem::OutOfRange => write!(f, "coordinates leave the range of numbers"),
         }
     }
 }

@@ -8,17 +8,22 @@
 //! | OFF | any of the ASCII kinds in three dimensions; normals and colours are passed over | text, same bits |
 //! | PLY | ASCII, binary in both byte orders; what is not a position or a face is passed over | `f64`, same bits |
 //!
-//! Pictures are written as PNG.
+//! | SVG | paths and basic shapes; see [`svg`] | path data, same bits |
+//!
+//! Tables of numbers are read from CSV and lists of points from JSON; pictures are written as PNG.
 //!
 //! Polygons become triangles in their own plane, also where they are not convex.
 
+pub mod csv;
 mod error;
 mod facets;
+pub mod json;
 pub mod obj;
 pub mod off;
 pub mod ply;
 pub mod png;
 pub mod stl;
+pub mod svg;
 mod text;
 mod weld;
 

@@ -82,13 +82,47 @@ impl HalfEdge {
 
 /// All half-edges, those of one undirected edge side by side.
 pub(super) fn sorted_half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
-    let mut all: Vec<HalfEdge> = (0..3 * triangles.len())
-        .map(|h| {
-            let triangle = triangles[h / 3];
-            let (from, to) = (triangle[h % 3], triangle[(h + 1) % 3]);
-            HalfEdge { low: from.min(to), high: from.max(to), reversed: from > to, id: h as u32 }
-        })
-        .collect();
-    all.sort_unstable();
+    let half_edge = |h: usize| {
+        let triangle = triangles[h / 3];
+        let (from, to) = (triangle[h % 3], triangle[(h + 1) % 3]);
+        HalfEdge { low: from.min(to), high: from.max(to), reversed: from > to, id: h as u32 }
+    };
+    let count = 3 * triangles.len();
+    let vertices = triangles.iter().flatten().max().map_or(0, |&last| last as usize + 1);
+    if vertices > 2 * count {
+        // Counting vertices would cost more than the edges do.
+        let mut all: Vec<HalfEdge> = (0..count).map(half_edge).collect();
+        all.sort_unstable();
+        return all;
+    }
+    // By the lower vertex in one pass of counting, then the few at each vertex by comparing.
+    let mut ends = vec![0_u32; vertices + 1];
+    (0..count).for_each(|h| ends[half_edge(h).low as usize + 1] += 1);
+    for vertex in 0..vertices {
+        ends[vertex + 1] += ends[vertex];
+    }
+    let mut all = vec![HalfEdge { low: 0, high: 0, reversed: false, id: 0 }; count];
+    for edge in (0..count).map(half_edge) {
+        let next = &mut ends[edge.low as usize];
+        all[*next as usize] = edge;
+        *next += 1;
+    }
+    all.chunk_by_mut(|a, b| a.low == b.low).for_each(<[HalfEdge]>::sort_unstable);
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_edges_are_sorted_however_large_the_indices() {
+        let triangles = [[7, 3, 1], [1, 3, 2], [3, 7, 2], [7, 1, 2], [1, 3, 7]];
+        let far = triangles.map(|t| t.map(|v: u32| v * 100_000_000));
+        for all in [sorted_half_edges(&triangles), sorted_half_edges(&far)] {
+            assert!(all.is_sorted());
+            assert_eq!(all.len(), 15);
+        }
+        assert_eq!(Topology::new(&triangles).twins(), Topology::new(&far).twins());
+    }
 }

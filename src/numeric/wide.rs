@@ -20,6 +20,21 @@ impl<const N: usize> Wide<N> {
     /// Zero.
     pub const ZERO: Self = Wide { negative: false, len: 0, limbs: [0; N] };
 
+    /// `high * 2^64 + low`, in at least three limbs.
+    #[inline]
+    pub fn from_halves(high: i128, low: u64) -> Self {
+        let (magnitude, lowest) = if high < 0 {
+            // The negative of a number in two's complement: all bits turned, plus one.
+            let (lowest, carry) = (!low).overflowing_add(1);
+            ((!high as u128).wrapping_add(u128::from(carry)), lowest)
+        } else {
+            (high as u128, low)
+        };
+        let mut limbs = [0; N];
+        (limbs[0], limbs[1], limbs[2]) = (lowest, magnitude as u64, (magnitude >> 64) as u64);
+        Wide::from_limbs(high < 0, limbs, 3)
+    }
+
     /// -1, 0 or 1.
     #[inline]
     pub fn signum(&self) -> i32 {

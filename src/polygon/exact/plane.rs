@@ -1,5 +1,6 @@
 use super::width::{Cross, Offset, PlaneAtPoint};
 use super::{PointId, Points, Site};
+use crate::math::Vec3;
 use crate::numeric::Wide;
 
 /// The points `p` with `normal . p = offset`.
@@ -32,6 +33,14 @@ impl Plane {
         normal[u] = d[v];
         normal[v] = -d[u];
         if normal == [0; 3] { None } else { Some(Plane::new(reduced(normal), a)) }
+    }
+
+    /// The plane of all points with one coordinate, its normal along that axis.
+    pub fn across(axis: usize, coordinate: i64) -> Plane {
+        let (mut normal, mut through) = ([0; 3], [0; 3]);
+        normal[axis] = 1;
+        through[axis] = coordinate;
+        Plane::new(normal, through)
     }
 
     fn new(normal: [i128; 3], through: Site) -> Plane {
@@ -113,13 +122,28 @@ impl Plane {
     /// Sign of one component of `self.normal x other.normal`.
     pub fn cross_sign(&self, other: &Plane, axis: usize) -> i32 {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let left = self.normal[u] as f64 * other.normal[v] as f64;
-        let right = self.normal[v] as f64 * other.normal[u] as f64;
+        let left = self.rounded[u] * other.rounded[v];
+        let right = self.rounded[v] * other.rounded[u];
         let bound = FILTER * (left.abs() + right.abs());
         if (left - right).abs() > bound {
             return if left > right { 1 } else { -1 };
         }
         self.cross(other, u, v).signum()
+    }
+
+    /// An axis along which `self.normal x other.normal` does not vanish: the one along which it is longest, as far as
+    /// doubles can tell; `None` for parallel planes.
+    pub fn longest_cross_axis(&self, other: &Plane) -> Option<usize> {
+        let normals = [self, other].map(|plane| Vec3::from_array(plane.rounded_normal()));
+        let [x, y, z] = normals[0].cross(normals[1]).abs().to_array();
+        let longest = if x >= y && x >= z {
+            0
+        } else if y >= z {
+            1
+        } else {
+            2
+        };
+        [longest, 0, 1, 2].into_iter().find(|&axis| self.cross_sign(other, axis) != 0)
     }
 
     fn cross(&self, other: &Plane, u: usize, v: usize) -> Cross {
@@ -184,8 +208,8 @@ impl Points {
     fn exact_side(&self, plane: &Plane, point: PointId) -> i32 {
         match self.fraction(point) {
             Ok(site) => plane.at_site(site).signum(),
-            Err((numerators, denominator)) => {
-                let value: PlaneAtPoint = plane.at_fraction(numerators, denominator);
+            Err(fraction) => {
+                let value: PlaneAtPoint = plane.at_fraction(&fraction.numerators, &fraction.denominator);
                 value.signum()
             }
         }
@@ -196,14 +220,17 @@ fn difference(a: Site, b: Site) -> [i128; 3] {
     [0, 1, 2].map(|i| i128::from(a[i]) - i128::from(b[i]))
 }
 
+/// The product in two halves, each of which fits: normals have at most 123 bits, coordinates 60.
 fn dot(normal: &[i128; 3], site: Site) -> Offset {
-    let mut sum = Offset::ZERO;
+    let (mut high, mut low) = (0_i128, 0_i128);
     for (n, c) in normal.iter().zip(site) {
-        if *n != 0 && c != 0 {
-            sum = sum.plus(&Wide::<2>::from(*n).times::<1, 3>(&Wide::from(c)));
-        }
+        let c = i128::from(c);
+        high += (n >> 64) * c;
+        low += i128::from(*n as u64) * c;
     }
-    sum
+    // high 2^64 + low, with the carry of the lower half.
+    let high = high + (low >> 64);
+    Wide::from_halves(high, low as u64)
 }
 
 /// A normal along an axis cut down to length one: axis-parallel faces are common, and small numbers are fast.

@@ -3,8 +3,7 @@ use super::{Plane, Site};
 use crate::math::Vec3;
 use crate::numeric::{MixHasher, Wide, rounded_quotient};
 use std::cmp::Ordering;
-use std::collections::HashMap;
-use std::hash::BuildHasherDefault;
+use std::hash::Hasher;
 
 /// A point of a [`Points`] table. Equal points have equal ids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -15,19 +14,24 @@ pub struct PointId(pub u32);
 pub struct Points {
     /// Positions in lattice units, correctly rounded.
     rounded: Vec<Vec3>,
-    exact: Vec<Exact>,
-    /// First point with these rounded coordinates; further ones are chained through `next`.
-    first: HashMap<[u64; 3], u32, BuildHasherDefault<MixHasher>>,
-    next: Vec<u32>,
+    /// Integer coordinates; for other points, [`IS_FRACTION`] and an index in `fractions`.
+    sites: Vec<Site>,
+    fractions: Vec<Fraction>,
+    /// Points by their rounded coordinates, in open addressing: each stands in the first free slot from its hash on.
+    slots: Vec<u32>,
 }
 
-#[derive(Debug)]
-enum Exact {
-    Site(Site),
-    Fraction(Box<([Numerator; 3], Denominator)>),
+/// Three numerators over one positive denominator.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fraction {
+    pub(crate) numerators: [Numerator; 3],
+    pub(crate) denominator: Denominator,
 }
 
-const NO_POINT: u32 = u32::MAX;
+/// No coordinate of a lattice point.
+const IS_FRACTION: i64 = i64::MIN;
+
+const FREE: u32 = u32::MAX;
 
 /// Relative error of an orientation in doubles from rounded coordinates, in units of the products of the sums of
 /// magnitudes: two roundings in each difference beside those of its terms, one in each product, one in the sum.
@@ -46,7 +50,11 @@ impl Points {
 
     /// The point at a lattice site.
     pub fn site(&mut self, site: Site) -> PointId {
-        self.intern(Exact::Site(site), Vec3::new(site[0] as f64, site[1] as f64, site[2] as f64))
+        let rounded = Vec3::new(site[0] as f64, site[1] as f64, site[2] as f64);
+        match self.find(rounded, |known| self.sites[known] == site) {
+            Ok(known) => known,
+            Err(slot) => self.push(rounded, site, slot),
+        }
     }
 
     /// Where the segment between two lattice points on different sides of `plane` crosses it.
@@ -81,10 +89,8 @@ impl Points {
 
     /// The integer coordinates of a lattice point; `None` for other points.
     pub fn as_site(&self, point: PointId) -> Option<Site> {
-        match &self.exact[point.0 as usize] {
-            Exact::Site(site) => Some(*site),
-            Exact::Fraction(_) => None,
-        }
+        let site = self.sites[point.0 as usize];
+        (site[0] != IS_FRACTION).then_some(site)
     }
 
     /// Orders two points by one coordinate.
@@ -110,18 +116,16 @@ impl Points {
     }
 
     /// Integer coordinates, or numerators and a positive denominator.
-    pub(crate) fn fraction(&self, point: PointId) -> Result<Site, (&[Numerator; 3], &Denominator)> {
-        match &self.exact[point.0 as usize] {
-            Exact::Site(site) => Ok(*site),
-            Exact::Fraction(fraction) => Err((&fraction.0, &fraction.1)),
-        }
+    pub(crate) fn fraction(&self, point: PointId) -> Result<Site, &Fraction> {
+        let site = self.sites[point.0 as usize];
+        if site[0] == IS_FRACTION { Err(&self.fractions[site[1] as usize]) } else { Ok(site) }
     }
 
     /// Numerators and denominator, whatever the point is.
     pub(crate) fn homogeneous(&self, point: PointId) -> ([Numerator; 3], Denominator) {
-        match &self.exact[point.0 as usize] {
-            Exact::Site(site) => (site.map(Numerator::from), Denominator::from(1_i64)),
-            Exact::Fraction(fraction) => **fraction,
+        match self.fraction(point) {
+            Ok(site) => (site.map(Numerator::from), Denominator::from(1_i64)),
+            Err(fraction) => (fraction.numerators, fraction.denominator),
         }
     }
 
@@ -129,38 +133,89 @@ impl Points {
         self.as_site(point).expect("a lattice point")
     }
 
-    fn fraction_point(&mut self, numerators: [Numerator; 3], denominator: Denominator) -> PointId {
+    /// The point with these coordinates; the denominator is positive.
+    pub(crate) fn fraction_point(&mut self, numerators: [Numerator; 3], denominator: Denominator) -> PointId {
         let rounded = Vec3::from_array(numerators.map(|n| rounded_quotient(&n, &denominator)));
-        match integer_site(rounded, &numerators, &denominator) {
-            Some(site) => self.site(site),
-            None => self.intern(Exact::Fraction(Box::new((numerators, denominator))), rounded),
+        if let Some(site) = integer_site(rounded, &numerators, &denominator) {
+            return self.site(site);
+        }
+        let fraction = Fraction { numerators, denominator };
+        match self.find(rounded, |known| self.is_fraction(known, &fraction)) {
+            Ok(known) => known,
+            Err(slot) => {
+                self.fractions.push(fraction);
+                self.push(rounded, [IS_FRACTION, self.fractions.len() as i64 - 1, 0], slot)
+            }
         }
     }
 
-    fn intern(&mut self, exact: Exact, rounded: Vec3) -> PointId {
-        let key = rounded.to_array().map(|c| (c + 0.0).to_bits());
+    /// Whether a point, of which the rounded coordinates are right, has these coordinates. A fraction is never a lattice
+    /// point: those are held as such.
+    fn is_fraction(&self, known: usize, fraction: &Fraction) -> bool {
+        let site = self.sites[known];
+        site[0] == IS_FRACTION && {
+            let other = &self.fractions[site[1] as usize];
+            (0..3).all(|i| {
+                let left: Comparison = other.numerators[i].times(&fraction.denominator);
+                left == fraction.numerators[i].times(&other.denominator)
+            })
+        }
+    }
+
+    /// The point with these rounded coordinates that passes the test, or the slot where it belongs.
+    fn find(&self, rounded: Vec3, is_same: impl Fn(usize) -> bool) -> Result<PointId, usize> {
+        if self.slots.is_empty() {
+            return Err(0);
+        }
+        let mut slot = self.first_slot(rounded);
+        loop {
+            match self.slots[slot] {
+                FREE => return Err(slot),
+                known if self.rounded[known as usize] == rounded && is_same(known as usize) => {
+                    return Ok(PointId(known));
+                }
+                _ => slot = (slot + 1) % self.slots.len(),
+            }
+        }
+    }
+
+    /// Where to begin to look for a point. There is a power of two of slots.
+    fn first_slot(&self, rounded: Vec3) -> usize {
+        let mut hasher = MixHasher::default();
+        // -0 and 0 are one coordinate.
+        rounded.to_array().into_iter().for_each(|c| hasher.write_u64((c + 0.0).to_bits()));
+        hasher.finish() as usize & (self.slots.len() - 1)
+    }
+
+    fn push(&mut self, rounded: Vec3, site: Site, slot: usize) -> PointId {
         let new = self.rounded.len() as u32;
-        let mut known = match self.first.entry(key) {
-            std::collections::hash_map::Entry::Vacant(slot) => {
-                slot.insert(new);
-                NO_POINT
-            }
-            std::collections::hash_map::Entry::Occupied(slot) => *slot.get(),
-        };
-        let mut last = NO_POINT;
-        while known != NO_POINT {
-            if self.exact[known as usize].equals(&exact) {
-                return PointId(known);
-            }
-            (last, known) = (known, self.next[known as usize]);
-        }
-        if last != NO_POINT {
-            self.next[last as usize] = new;
-        }
         self.rounded.push(rounded);
-        self.exact.push(exact);
-        self.next.push(NO_POINT);
+        self.sites.push(site);
+        // At most half of the slots are taken.
+        if 2 * self.rounded.len() > self.slots.len() {
+            self.place_all(4 * self.rounded.len());
+        } else {
+            self.slots[slot] = new;
+        }
         PointId(new)
+    }
+
+    /// Makes room for more points to come.
+    pub fn reserve(&mut self, more: usize) {
+        self.rounded.reserve(more);
+        self.sites.reserve(more);
+        self.place_all(2 * (self.rounded.len() + more));
+    }
+
+    fn place_all(&mut self, least: usize) {
+        self.slots = vec![FREE; least.next_power_of_two()];
+        for point in 0..self.rounded.len() {
+            let mut slot = self.first_slot(self.rounded[point]);
+            while self.slots[slot] != FREE {
+                slot = (slot + 1) % self.slots.len();
+            }
+            self.slots[slot] = point as u32;
+        }
     }
 
     #[cold]
@@ -189,21 +244,6 @@ impl Points {
             left.minus(&p[v].times(&q[u])).times(w)
         };
         minor(&a, &b, &cw).plus(&minor(&b, &c, &aw)).plus(&minor(&c, &a, &bw)).signum()
-    }
-}
-
-impl Exact {
-    /// Whether both are the same point, given that their rounded coordinates are the same. A fraction is never a
-    /// lattice point (those are stored as such).
-    fn equals(&self, other: &Exact) -> bool {
-        match (self, other) {
-            (Exact::Site(a), Exact::Site(b)) => a == b,
-            (Exact::Fraction(a), Exact::Fraction(b)) => (0..3).all(|i| {
-                let left: Comparison = a.0[i].times(&b.1);
-                left == b.0[i].times(&a.1)
-            }),
-            _ => false,
-        }
     }
 }
 

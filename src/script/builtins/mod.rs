@@ -2,6 +2,7 @@
 
 mod color;
 mod combine;
+mod curves;
 mod extrude;
 mod lists;
 mod math;
@@ -16,7 +17,7 @@ pub(super) use random::Random;
 
 use super::Failure;
 use super::budget::Outcome;
-use super::eval::{Invocation, Machine, Made, Session};
+use super::eval::{Fragmentation, Invocation, Machine, Made, Session};
 use super::value::Value;
 
 /// Something the language brings along.
@@ -49,6 +50,8 @@ pub enum BuiltinKind {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
     Function(FunctionAction),
+    /// A function whose arguments may be named; it gets a value for every parameter, `undef` where none was given.
+    NamedFunction(NamedAction),
     Module(ModuleAction),
     /// Known to the grammar, or a variable.
     Nothing,
@@ -57,6 +60,7 @@ pub(super) enum Action {
 }
 
 type FunctionAction = fn(&mut Session<'_>, &[Value]) -> Outcome;
+pub(super) type NamedAction = fn(&mut Session<'_>, &[Value], Fragmentation) -> Outcome;
 type ModuleAction = for<'m, 'p> fn(&'m mut Machine<'p>, &'m Invocation<'m, 'p>) -> Result<Made, Failure>;
 
 impl Builtin {
@@ -102,6 +106,7 @@ const TABLES: &[&[Builtin]] = &[
     extrude::TABLE,
     math::TABLE,
     lists::TABLE,
+    curves::TABLE,
     text::TABLE,
     random::TABLE,
     search::TABLE,
@@ -125,6 +130,18 @@ const fn function_row(
         positional,
         action: Action::Function(action),
     }
+}
+
+/// A row for a function whose arguments may be named, and that asks for `$fn`, `$fa`, `$fs` and `$fe`.
+const fn named_row(
+    name: &'static str,
+    parameters: &'static [&'static str],
+    help: &'static str,
+    action: NamedAction,
+) -> Builtin {
+    let positional = parameters.len();
+    let kind = BuiltinKind::Function;
+    Builtin { name, kind, parameters, help, positional, action: Action::NamedFunction(action) }
 }
 
 /// A row for a module, with the number of parameters that may be given without a name.

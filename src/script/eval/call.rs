@@ -5,7 +5,8 @@ use super::{Failure, Machine, Running, What};
 use crate::script::ast::{
     Argument, Call, Callee, Expr, ExprId, FunctionId, Home, Parameter, Room, Slot, Target, UnitId,
 };
-use crate::script::builtins::{Action, Builtin};
+use crate::script::budget::{Fault, Outcome};
+use crate::script::builtins::{Action, Builtin, NamedAction};
 use crate::script::diagnostic::Span;
 use crate::script::names::Symbol;
 use crate::script::report::Complaint;
@@ -201,13 +202,16 @@ impl<'p> Machine<'p> {
     fn warn_of_unknown_parameter(&mut self, name: Symbol, parameters: &[Parameter], span: Span) {
         let names = &self.program.names;
         let known: Vec<&str> = parameters.iter().map(|parameter| names.text(parameter.name)).collect();
-        let text = format!("there is no parameter {}", names.text(name));
-        let hint = match crate::script::suggest::closest(names.text(name), known.iter().copied()) {
+        self.warn_of_unknown_name(names.text(name), &known, span);
+    }
+
+    fn warn_of_unknown_name(&mut self, name: &str, known: &[&str], span: Span) {
+        let hint = match crate::script::suggest::closest(name, known.iter().copied()) {
             Some(meant) => format!("did you mean {meant}?"),
             None if known.is_empty() => "there are no parameters".to_owned(),
             None => format!("the parameters are {}", known.join(", ")),
         };
-        self.say(Complaint::warning(span, text).hint(hint));
+        self.say(Complaint::warning(span, format!("there is no parameter {name}")).hint(hint));
     }
 
     /// Runs a call and all that it ends in.
@@ -293,6 +297,9 @@ impl<'p> Machine<'p> {
         span: Span,
         frame: &Rc<Frame>,
     ) -> Result<Value, Failure> {
+        if let Action::NamedFunction(action) = builtin.action {
+            return self.call_named(builtin, action, arguments, span, frame);
+        }
         let base = self.stack.len();
         for argument in arguments {
             // A question that may be asked about names that mean nothing.
@@ -310,11 +317,57 @@ impl<'p> Machine<'p> {
                 spent.and_then(|()| action(&mut self.session, &self.stack[base..]))
             }
             Action::Missing => return Err(self.missing(span, builtin.name)),
-            Action::Module(_) | Action::Nothing => Ok(Value::Undef),
+            Action::Module(_) | Action::NamedFunction(_) | Action::Nothing => Ok(Value::Undef),
         };
         self.stack.truncate(base);
+        self.settle_builtin(builtin, outcome, span)
+    }
+
+    /// Calls a builtin whose arguments may be named. `$` variables among them hold during the call.
+    fn call_named(
+        &mut self,
+        builtin: &'static Builtin,
+        action: NamedAction,
+        arguments: &'p [Argument],
+        span: Span,
+        frame: &Rc<Frame>,
+    ) -> Result<Value, Failure> {
+        let mut values = vec![Value::Undef; builtin.parameters.len()];
+        let (mut unnamed, mut specials) = (0, Vec::new());
+        for argument in arguments {
+            let value = self.eval(argument.value, frame)?;
+            match argument.name {
+                Some(name) if name.is_special() => specials.push((name, value)),
+                Some(name) => {
+                    let text = self.program.names.text(name);
+                    match builtin.parameters.iter().position(|parameter| *parameter == text) {
+                        Some(index) => values[index] = value,
+                        None => self.warn_of_unknown_name(text, builtin.parameters, argument.span),
+                    }
+                }
+                None if unnamed < values.len() => {
+                    values[unnamed] = value;
+                    unnamed += 1;
+                }
+                None => {
+                    let text = format!("too many arguments: there are {} parameters", values.len());
+                    self.warn(argument.span, text);
+                }
+            }
+        }
+        let mark = self.specials.mark();
+        specials.into_iter().for_each(|(name, value)| self.specials.set(name, value));
+        let fragmentation = self.specials.fragmentation();
+        let spent = self.session.budget.spend(1);
+        let outcome = spent.and_then(|()| action(&mut self.session, &values, fragmentation));
+        self.specials.restore(mark);
+        self.settle_builtin(builtin, outcome, span)
+    }
+
+    /// The value of a builtin; a warning that names it where it has none.
+    fn settle_builtin(&mut self, builtin: &Builtin, outcome: Outcome, span: Span) -> Result<Value, Failure> {
         match outcome {
-            Err(crate::script::budget::Fault::Undefined(text)) => {
+            Err(Fault::Undefined(text)) => {
                 self.warn(span, format!("{}(): {text}", builtin.name));
                 Ok(Value::Undef)
             }

@@ -40,7 +40,7 @@ impl Memory {
         self.run_with(text, &Options::default())
     }
 
-    fn run_with(&mut self, text: &str, options: &Options) -> Result<Evaluated, Failure> {
+    pub(super) fn run_with(&mut self, text: &str, options: &Options) -> Result<Evaluated, Failure> {
         evaluate(Loaded { name: "main.scad".to_owned(), text: text.to_owned() }, self, options)
     }
 

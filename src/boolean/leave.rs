@@ -1,0 +1,133 @@
+//! From exact surface to solid: vertices numbered, positions rounded, once.
+
+use super::Combined;
+use super::body::Body;
+use super::world::{NONE, World};
+use crate::math::Vec3;
+use crate::mesh::{Mesh, Solid, fans};
+use crate::polygon::exact::{Plane, PointId};
+
+impl World<'_> {
+    /// The solid that a body stands for.
+    pub(super) fn solid_of(mut self, body: Body) -> Combined {
+        let mut surface = Numbered::new(body);
+        let is_parted = surface.part_double_edges(&mut self);
+        let Numbered { body, vertices, count } = surface;
+        let mut positions = vec![Vec3::ZERO; count as usize];
+        for (&point, &vertex) in body.corners.iter().flatten().zip(&vertices) {
+            positions[vertex as usize] = self.places.position(point);
+        }
+        let is_given = |&point: &PointId| self.places.is_given(point);
+        let embedded = body.embedded
+            && !is_parted
+            && self.places.is_exact()
+            && body.corners.iter().flatten().all(is_given);
+        let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
+        Combined { solid: Solid::assume(mesh, embedded), birth: body.births }
+    }
+}
+
+/// A body with its corners numbered, one vertex for each fan of triangles.
+struct Numbered {
+    body: Body,
+    /// For each corner, its vertex.
+    vertices: Vec<u32>,
+    count: u32,
+}
+
+impl Numbered {
+    fn new(body: Body) -> Numbered {
+        let (vertices, count) = fans(&body.twins);
+        Numbered { body, vertices, count }
+    }
+
+    /// Gives each pair of half-edges an edge of its own: where a solid pinches itself along an edge, both wedges may run
+    /// between the same two vertices; all but one of them get a vertex on the way. Tells whether there were any.
+    fn part_double_edges(&mut self, world: &mut World<'_>) -> bool {
+        let mut double = self.double_edges();
+        let any = !double.is_empty();
+        while !double.is_empty() {
+            self.part(world, &double);
+            double = self.double_edges();
+        }
+        any
+    }
+
+    /// Parts edges, but none of a triangle that was cut already: its half-edges have moved.
+    fn part(&mut self, world: &mut World<'_>, double: &[u32]) {
+        let mut is_cut = vec![false; self.body.len()];
+        for &half_edge in double {
+            let twin = self.body.twins[half_edge as usize];
+            let triangles = [half_edge as usize / 3, twin as usize / 3];
+            if triangles.iter().any(|&t| is_cut[t]) {
+                continue;
+            }
+            triangles.into_iter().for_each(|t| is_cut[t] = true);
+            let on_the_way = self.point_on(world, half_edge);
+            let far = self.split_side(half_edge, on_the_way);
+            let other_far = self.split_side(twin, on_the_way);
+            self.count += 1;
+            for (x, y) in [(half_edge, other_far), (twin, far)] {
+                self.body.twins[x as usize] = y;
+                self.body.twins[y as usize] = x;
+            }
+        }
+    }
+
+    /// One half-edge of each edge between vertices that an edge before it joins too.
+    fn double_edges(&self) -> Vec<u32> {
+        let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
+        let mut edges: Vec<(u32, u32, u32)> = (0..self.vertices.len())
+            .map(|h| (self.vertices[h], self.vertices[next(h)], h as u32))
+            .filter(|(from, to, _)| from < to)
+            .collect();
+        edges.sort_unstable();
+        edges.windows(2).filter(|e| (e[0].0, e[0].1) == (e[1].0, e[1].1)).map(|e| e[1].2).collect()
+    }
+
+    /// A point on an edge, where a plane of lattice points crosses it near the middle. Where the edge is too short for
+    /// one, its start.
+    fn point_on(&self, world: &mut World<'_>, half_edge: u32) -> PointId {
+        let corners = self.body.corners[half_edge as usize / 3];
+        let [from, to] = [0, 1].map(|i| corners[(half_edge as usize + i) % 3]);
+        let [a, b] = [from, to].map(|p| world.points().rounded(p));
+        let along = (b - a).abs();
+        let axis = (0..3).fold(0, |best, axis| if along[axis] > along[best] { axis } else { best });
+        let across = Plane::across(axis, (0.5 * (a[axis] + b[axis])) as i64);
+        if across.side(world.points(), from) * across.side(world.points(), to) >= 0 {
+            return from;
+        }
+        match self.body.lines.get(half_edge as usize) {
+            None | Some(&NONE) => world.places.points.crossing(from, to, &across),
+            Some(&line) => {
+                let face = self.body.facings[half_edge as usize / 3].plane();
+                let (face, line) = (*world.plane(face), world.lines[line as usize]);
+                world.places.points.meeting(&face, &line, &across).expect("the plane crosses the edge")
+            }
+        }
+    }
+
+    /// Cuts the triangle of a half-edge in two at a point on it. The half-edge keeps its first half; the other half, which
+    /// is returned, goes to a new triangle.
+    fn split_side(&mut self, half_edge: u32, at: PointId) -> u32 {
+        let Numbered { body, vertices, count } = self;
+        let (t, side) = (half_edge as usize / 3, half_edge as usize % 3);
+        let (to, opposite) = ((side + 1) % 3, (side + 2) % 3);
+        let new = body.corners.len() as u32;
+        let corners = body.corners[t];
+        body.corners.push([at, corners[to], corners[opposite]]);
+        body.corners[t][to] = at;
+        vertices.extend([*count, vertices[3 * t + to], vertices[3 * t + opposite]]);
+        vertices[3 * t + to] = *count;
+        body.births.push(body.births[t]);
+        body.facings.push(body.facings[t]);
+        let outer_line = body.lines[3 * t + to];
+        body.lines.extend([body.lines[half_edge as usize], outer_line, NONE]);
+        body.lines[3 * t + to] = NONE;
+        let outer = body.twins[3 * t + to];
+        body.twins.extend([NONE, outer, (3 * t + to) as u32]);
+        body.twins[outer as usize] = 3 * new + 1;
+        body.twins[3 * t + to] = 3 * new + 2;
+        3 * new
+    }
+}

@@ -1,0 +1,207 @@
+//! Pairs of triangles that may touch.
+
+use super::scene::Scene;
+use crate::math::{Aabb, Vec3, cbrt};
+use crate::spatial::Bvh;
+
+/// Pairs of triangles whose boxes touch: of different members and, in members not known to be embedded, of one.
+pub(super) fn candidates(scene: &Scene<'_>) -> Vec<[u32; 2]> {
+    let members = &scene.members;
+    let boxes: Vec<Aabb> = members.iter().map(|member| member.bounds).collect();
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    Bvh::new(&boxes).self_pairs(&boxes, |i, j| pairs.push((i, j)));
+    pairs.extend((0..members.len() as u32).filter(|&i| !members[i as usize].embedded).map(|i| (i, i)));
+    pairs.sort_unstable();
+
+    let parts = parts(scene, &pairs, &boxes);
+    let mut found = Vec::new();
+    for (i, j) in pairs {
+        let (a, b) = (&parts[i as usize], &parts[j as usize]);
+        let mut report = |x: u32, y: u32| found.push([a.triangles[x as usize], b.triangles[y as usize]]);
+        if i == j {
+            a.bvh.self_pairs(&a.boxes, report);
+        } else {
+            a.bvh.pairs(&a.boxes, &b.bvh, &b.boxes, &mut report);
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// The triangles of a member that another one comes near, by place.
+#[derive(Default)]
+struct Part {
+    triangles: Vec<u32>,
+    boxes: Vec<Aabb>,
+    bvh: Bvh,
+}
+
+/// The parts of all members, given the pairs of them whose boxes touch.
+fn parts(scene: &Scene<'_>, pairs: &[(u32, u32)], boxes: &[Aabb]) -> Vec<Part> {
+    let mut windows = vec![Aabb::EMPTY; boxes.len()];
+    for &(i, j) in pairs {
+        let overlap = boxes[i as usize].intersection(boxes[j as usize]);
+        for k in [i, j] {
+            windows[k as usize] = windows[k as usize].union(overlap);
+        }
+    }
+    let crowd = Crowd::new(scene, &windows);
+    let part = |(member, &window): (usize, &Aabb)| {
+        let mut part = Part::default();
+        in_window(scene, member, window, |t, bounds| {
+            if crowd.as_ref().is_none_or(|crowd| crowd.is_near_another(scene, member, bounds)) {
+                part.triangles.push(t);
+                part.boxes.push(bounds);
+            }
+        });
+        part.bvh = Bvh::new(&part.boxes);
+        part
+    };
+    windows.iter().enumerate().map(part).collect()
+}
+
+/// Calls `see` for the triangles of a member that touch a box.
+fn in_window(scene: &Scene<'_>, member: usize, window: Aabb, mut see: impl FnMut(u32, Aabb)) {
+    if window.is_empty() {
+        return;
+    }
+    for t in scene.members[member].triangles.clone() {
+        let bounds = scene.bounds_of(t);
+        if bounds.touches(window) {
+            see(t, bounds);
+        }
+    }
+}
+
+/// Scenes with fewer triangles are gone through pair by pair without ado.
+const WORTH_A_GRID: usize = 2000;
+
+/// A triangle that spans more cells is kept apart.
+const LARGE: usize = 64;
+
+/// Which cells of a coarse grid triangles of several members reach: away from those, nothing meets.
+struct Crowd {
+    grid: Grid,
+    /// For each cell, the one member that reaches it, [`NOBODY`] or [`SEVERAL`].
+    reached_by: Vec<u32>,
+    /// Triangles that span many cells, with their members.
+    large: Vec<(u32, Aabb)>,
+    large_boxes: Vec<Aabb>,
+    large_bvh: Bvh,
+}
+
+const NOBODY: u32 = u32::MAX;
+const SEVERAL: u32 = u32::MAX - 1;
+
+impl Crowd {
+    fn new(scene: &Scene<'_>, windows: &[Aabb]) -> Option<Crowd> {
+        let near = (0..windows.len()).filter(|&k| !windows[k].is_empty());
+        let count: usize = near.map(|k| scene.members[k].triangles.len()).sum();
+        if count < WORTH_A_GRID {
+            return None;
+        }
+        let all = windows.iter().fold(Aabb::EMPTY, |all, &window| all.union(window));
+        let grid = Grid::new(all, count);
+        let mut crowd = Crowd {
+            reached_by: vec![NOBODY; grid.len()],
+            grid,
+            large: Vec::new(),
+            large_boxes: Vec::new(),
+            large_bvh: Bvh::default(),
+        };
+        for (member, &window) in windows.iter().enumerate() {
+            in_window(scene, member, window, |_, bounds| crowd.enter(member as u32, bounds));
+        }
+        crowd.large_boxes = crowd.large.iter().map(|&(_, bounds)| bounds).collect();
+        crowd.large_bvh = Bvh::new(&crowd.large_boxes);
+        Some(crowd)
+    }
+
+    fn enter(&mut self, member: u32, bounds: Aabb) {
+        let span = self.grid.span(bounds);
+        if span.len() > LARGE {
+            self.large.push((member, bounds));
+            return;
+        }
+        for cell in self.grid.cells(span) {
+            let reached_by = &mut self.reached_by[cell];
+            *reached_by = match *reached_by {
+                NOBODY => member,
+                known if known == member => member,
+                _ => SEVERAL,
+            };
+        }
+    }
+
+    /// Whether something of another member, or of the same one if it may cross itself, may touch a triangle with this box.
+    fn is_near_another(&self, scene: &Scene<'_>, member: usize, bounds: Aabb) -> bool {
+        let span = self.grid.span(bounds);
+        if !scene.members[member].embedded || span.len() > LARGE {
+            return true;
+        }
+        if self.grid.cells(span).any(|cell| self.reached_by[cell] == SEVERAL) {
+            return true;
+        }
+        let mut near = false;
+        self.large_bvh.touching(&self.large_boxes, bounds, |i| {
+            near |= self.large[i as usize].0 != member as u32;
+        });
+        near
+    }
+}
+
+/// A grid of cells over a box. The cell of a coordinate grows with it, so boxes that touch have a cell in common.
+struct Grid {
+    min: Vec3,
+    /// Cells a unit along each axis.
+    scale: Vec3,
+    counts: [usize; 3],
+}
+
+/// Cells from one to another, both included, along each axis.
+#[derive(Clone, Copy)]
+struct Span {
+    from: [usize; 3],
+    to: [usize; 3],
+}
+
+impl Grid {
+    /// About as many cells as triangles: then most triangles of an even surface span few cells, and most cells are free.
+    fn new(bounds: Aabb, triangles: usize) -> Grid {
+        const MOST: f64 = 128.0;
+        let size = bounds.size();
+        let longest = size.max_element();
+        let cells = cbrt(triangles as f64).ceil().min(MOST);
+        let count = |extent: f64| if longest > 0.0 { (cells * extent / longest).ceil().clamp(1.0, MOST) } else { 1.0 };
+        let counts = Vec3::from_array(size.to_array().map(count));
+        let scale = counts / size;
+        let scale = Vec3::from_array(scale.to_array().map(|s| if s.is_finite() { s } else { 0.0 }));
+        Grid { min: bounds.min, scale, counts: counts.to_array().map(|c| c as usize) }
+    }
+
+    fn len(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    fn span(&self, bounds: Aabb) -> Span {
+        let cell = |p: Vec3| {
+            let place = ((p - self.min) * self.scale).to_array();
+            [0, 1, 2].map(|axis| (place[axis].max(0.0) as usize).min(self.counts[axis] - 1))
+        };
+        Span { from: cell(bounds.min), to: cell(bounds.max) }
+    }
+
+    fn cells(&self, span: Span) -> impl Iterator<Item = usize> {
+        let [nx, ny, _] = self.counts;
+        let Span { from, to } = span;
+        (from[2]..=to[2]).flat_map(move |z| {
+            (from[1]..=to[1]).flat_map(move |y| (from[0]..=to[0]).map(move |x| (z * ny + y) * nx + x))
+        })
+    }
+}
+
+impl Span {
+    fn len(self) -> usize {
+        (0..3).map(|axis| self.to[axis] - self.from[axis] + 1).product()
+    }
+}
