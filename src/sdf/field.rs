@@ -154,8 +154,9 @@ pub struct Slopes {
     /// The values.
     pub range: Range,
     /// For any two points p and q of the cell, f(p) - f(q) is a scalar product of p - q with a vector in these
-    /// three intervals (but for rounding). They hold the gradients of both sides of every kink, and are
-    /// [`Interval::ENTIRE`] where the field jumps, has no bounded slope, or may be undefined.
+    /// three intervals (but for rounding). They hold the gradients of both sides of every kink within the cell, though
+    /// not of the far side of a kink on its boundary, and are [`Interval::ENTIRE`] where the field jumps, has no bounded
+    /// slope, or may be undefined.
     pub gradient: [Interval; 3],
 }
 

@@ -3,8 +3,22 @@
 //! [`Field`] is what verbs ask of such a function: values, gradients, and, where it can, ranges over boxes that were
 //! rounded outward and so prove something.
 
+mod dual;
+mod expr;
 mod field;
+mod graph;
+mod number;
+mod op;
+mod primitive;
+mod prune;
 mod range;
+mod real;
+mod registers;
+mod tape;
 
+pub use expr::Expr;
 pub use field::{Curvature, Field, Points, Slopes};
+pub use op::{Binary, Blend, Unary};
+pub use primitive::{Periodic, Primitive};
 pub use range::Range;
+pub use tape::Tape;
