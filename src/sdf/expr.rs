@@ -325,7 +325,30 @@ impl Neg for Expr {
 
 impl fmt::Debug for Expr {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Expr({} operations)", self.compile().len())
+        let tape = self.compile();
+        for (id, step) in tape.steps.iter().enumerate() {
+            write!(f, "_{id} {:?} {:?}; ", step.op, step.args())?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Op {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Op::Axis(axis) => write!(f, "Axis({axis})"),
+            Op::Constant(x) => write!(f, "Constant({x:?})"),
+            Op::Unary(op) => op.fmt(f),
+            Op::Binary(op) => op.fmt(f),
+            Op::Power(exponent) => write!(f, "Power({exponent:?})"),
+            Op::Linear(row) => write!(f, "Linear({row:?})"),
+            Op::Norm => f.write_str("Norm"),
+            Op::Corner => f.write_str("Corner"),
+            Op::Blend(blend) => blend.fmt(f),
+            Op::Primitive(primitive) => primitive.fmt(f),
+            Op::Field(_) => f.write_str("Field"),
+            Op::Place => f.write_str("Place"),
+        }
     }
 }
 

@@ -132,8 +132,10 @@ impl Div for Range {
 
     #[inline]
     fn div(self, other: Range) -> Range {
-        let quotient = self.joined(other, self.interval / other.interval);
         let pole = other.interval.contains(0.0);
+        // Numbers divided by a zero of either sign are infinite, and what comes after may make them finite again.
+        let interval = if pole { Interval::ENTIRE } else { self.interval / other.interval };
+        let quotient = self.joined(other, interval);
         let clash = self.unbounded() && other.unbounded();
         let continuous = quotient.continuous && !pole;
         Range { continuous, ..quotient.with(quotient.interval, !(pole || clash)) }
@@ -218,7 +220,12 @@ impl Real for Range {
     }
 
     fn ln(self) -> Range {
-        self.with(self.interval.ln(), self.interval.lo > 0.0)
+        let mut interval = self.interval.ln();
+        if self.interval.contains(0.0) {
+            // The logarithm of zero as computed.
+            interval = Interval { lo: f64::NEG_INFINITY, hi: interval.hi.max(f64::MIN) };
+        }
+        self.with(interval, self.interval.lo > 0.0)
     }
 
     fn not(self) -> Range {
@@ -288,15 +295,30 @@ impl Real for Range {
         if self.interval.lo < 0.0 {
             return Range::UNKNOWN;
         }
-        let power = self.joined(exponent, self.interval.pow(exponent.interval));
+        let mut power = self.joined(exponent, self.interval.pow(exponent.interval));
+        if !power.defined {
+            // 1 to any power is 1 and so is anything to the power of 0, even where the other is NaN.
+            power.interval = power.interval.hull(Interval::ONE);
+        }
         let sound = self.interval.lo > 0.0 && !self.unbounded() && !exponent.unbounded();
         Range { continuous: power.continuous && sound, ..power.with(power.interval, sound) }
     }
 
     fn power(self, exponent: f64) -> Range {
+        if exponent == 0.0 {
+            return Range { interval: Interval::ONE, ..self };
+        }
+        if !exponent.is_finite() {
+            return Range::UNKNOWN;
+        }
         let whole = exponent.floor() == exponent;
+        if !whole && self.interval.lo == f64::NEG_INFINITY {
+            return Range::UNKNOWN; // Minus infinity has all powers.
+        }
         let sound = (whole || self.interval.lo >= 0.0) && (exponent >= 0.0 || !self.interval.contains(0.0));
-        let power = self.with(self.interval.power(exponent), sound);
+        let pole = exponent < 0.0 && self.interval.contains(0.0);
+        let interval = if pole { Interval::ENTIRE } else { self.interval.power(exponent) };
+        let power = self.with(interval, sound);
         power.steady(power.interval, sound)
     }
 
