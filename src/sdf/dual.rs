@@ -27,12 +27,14 @@ impl<T: Real> Dual<T> {
     /// A function of this number, by the chain rule.
     #[inline]
     fn chain(self, value: T, derivative: T) -> Dual<T> {
+        let derivative = derivative.as_slope();
         Dual { value, slope: self.slope.map(|s| derivative * s) }
     }
 
     /// A function of two numbers, by the chain rule.
     #[inline]
     fn chain2(self, other: Dual<T>, value: T, by_self: T, by_other: T) -> Dual<T> {
+        let (by_self, by_other) = (by_self.as_slope(), by_other.as_slope());
         Dual { value, slope: from_fn(|i| by_self * self.slope[i] + by_other * other.slope[i]) }
     }
 
@@ -257,6 +259,10 @@ impl<T: Real> Real for Dual<T> {
     fn switched(self, zero: Dual<T>, otherwise: Dual<T>) -> Dual<T> {
         let value = self.value.switched(zero.value, otherwise.value);
         Dual { value, slope: from_fn(|i| self.value.switched(zero.slope[i], otherwise.slope[i])) }
+    }
+
+    fn as_slope(self) -> Dual<T> {
+        Dual { value: self.value.as_slope(), slope: self.slope.map(T::as_slope) }
     }
 
     fn is_certain(self) -> bool {

@@ -1,3 +1,4 @@
+use super::implicit::BadNumber;
 use super::real::{Real, sum_of_squares};
 use crate::math::Vec3;
 
@@ -158,6 +159,46 @@ impl Primitive {
                 let fall = sum_of_squares(p) * T::of(1.0 / (radius * radius));
                 let rest = (T::of(1.0) - fall).max(T::of(0.0));
                 rest.square() * rest * T::of(weight)
+            }
+        }
+    }
+
+    /// Whether its numbers make a shape.
+    ///
+    /// # Errors
+    /// Which of them does not.
+    pub fn check(self) -> Result<(), BadNumber> {
+        let sides =
+            |name, v: Vec3| v.to_array().into_iter().try_for_each(|x| BadNumber::positive(name, x).map(drop));
+        let positive = |name, x| BadNumber::positive(name, x).map(drop);
+        match self {
+            Primitive::Sphere { radius } | Primitive::Octahedron { radius } => positive("radius", radius),
+            Primitive::Ellipsoid { radii } => sides("half-axis", radii),
+            Primitive::Cuboid { half } => sides("half side", half),
+            Primitive::RoundedCuboid { half, radius } => {
+                sides("half side", half)?;
+                BadNumber::within("radius", "from 0 to the least half side", radius, half.min_element())
+                    .map(drop)
+            }
+            Primitive::Cylinder { radius, half_height, rounding } => {
+                positive("radius", radius)?;
+                positive("half height", half_height)?;
+                let most = radius.min(half_height);
+                BadNumber::within("rounding", "from 0 to the radius and half the height", rounding, most)
+                    .map(drop)
+            }
+            Primitive::Capsule { half_length, radius } => {
+                BadNumber::within("half length", "0 or more and finite", half_length, f64::MAX)?;
+                positive("radius", radius)
+            }
+            Primitive::Torus { major, minor } => {
+                positive("radius of the ring", major)?;
+                positive("radius of the tube", minor)
+            }
+            Primitive::Periodic { period, .. } => positive("period", period),
+            Primitive::Blob { radius, weight } => {
+                positive("radius", radius)?;
+                BadNumber::finite("weight", weight).map(drop)
             }
         }
     }

@@ -375,6 +375,11 @@ impl Real for Range {
     }
 
     #[inline]
+    fn as_slope(self) -> Range {
+        if self.interval.is_empty() { Range::UNKNOWN } else { self }
+    }
+
+    #[inline]
     fn is_certain(self) -> bool {
         self.interval.is_point()
     }

@@ -59,6 +59,10 @@ pub(super) trait Real:
     fn sided(self, negative: Self, otherwise: Self) -> Self;
     /// The first where this one is zero, otherwise the second; what is chosen may jump.
     fn switched(self, zero: Self, otherwise: Self) -> Self;
+    /// The same; a range without any number, which as a slope says nothing, becomes that of all numbers.
+    fn as_slope(self) -> Self {
+        self
+    }
     /// Whether it is known to be one number.
     fn is_certain(self) -> bool;
 
