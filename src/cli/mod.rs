@@ -8,6 +8,7 @@ mod build;
 mod builtins;
 mod check;
 mod diagnostic;
+mod eval;
 mod host;
 mod info;
 mod input;
@@ -51,6 +52,7 @@ enum Command {
     Info(info::Args),
     Render(Box<render::Args>),
     Boolean(boolean::Args),
+    Eval(eval::Args),
     Builtins(builtins::Args),
 }
 
@@ -62,6 +64,7 @@ impl Command {
             Command::Info(args) => info::run(args, terminal),
             Command::Render(args) => render::run(args, terminal),
             Command::Boolean(args) => boolean::run(args, terminal),
+            Command::Eval(args) => eval::run(args, terminal),
             Command::Builtins(args) => builtins::run(args),
         }
     }

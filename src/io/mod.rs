@@ -8,10 +8,12 @@
 //! | OFF | any of the ASCII kinds in three dimensions; normals and colours are passed over | text, same bits |
 //! | PLY | ASCII, binary in both byte orders; what is not a position or a face is passed over | `f64`, same bits |
 //!
-//! Pictures are written as PNG.
+//! Pictures are written as PNG, formulas ([`crate::sdf::Expr`]) read and written in the text format of fidget and libfive
+//! ([`vm`]), points and numbers as [`csv`].
 //!
 //! Polygons become triangles in their own plane, also where they are not convex.
 
+pub mod csv;
 mod error;
 mod facets;
 pub mod obj;
@@ -20,6 +22,7 @@ pub mod ply;
 pub mod png;
 pub mod stl;
 mod text;
+pub mod vm;
 mod weld;
 
 pub use error::{Place, Problem, ReadError, WriteError};

@@ -43,7 +43,12 @@ impl Polygon {
             }
         }
         let count = edges.len();
-        BadNumber::check("number of edges", "from 3 to 4096", count as f64, (3..=MOST_EDGES).contains(&count))?;
+        BadNumber::check(
+            "number of edges",
+            "from 3 to 4096",
+            count as f64,
+            (3..=MOST_EDGES).contains(&count),
+        )?;
         let corners = edges.as_flattened();
         let min = corners.iter().fold(Vec2::INFINITY, |least, &p| least.min(p));
         let max = corners.iter().fold(Vec2::NEG_INFINITY, |most, &p| most.max(p));
@@ -140,7 +145,9 @@ impl Field for Polygon {
         let limit = (distance + 2.0 * reach) * (1.0 + 16.0 * f64::EPSILON) + f64::MIN_POSITIVE;
         let near = |&i: &usize| Polygon::from_edge(self.edges[i], middle).0.sqrt() <= limit;
         let near: Vec<usize> = (0..self.edges.len()).filter(near).take(MOST_NORMALS + 1).collect();
-        let known = !near.is_empty() && near.len() <= MOST_NORMALS && near.iter().all(|&i| self.normals[i] != Vec2::ZERO);
+        let known = !near.is_empty()
+            && near.len() <= MOST_NORMALS
+            && near.iter().all(|&i| self.normals[i] != Vec2::ZERO);
         let normals = near.iter().map(|&i| self.normals[i].extend(0.0));
         let mut gradient = if known { cone(normals) } else { [Interval::SIGNED_UNIT; 3] };
         gradient[2] = Interval::ZERO;
