@@ -38,7 +38,7 @@
 //! | layer | modules |
 //! |---|---|
 //! | ground | [`math`], [`par`], [`numeric`] |
-//! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`] |
+//! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`], [`sdf`] |
 //! | verbs | [`tessellate`], [`boolean`], [`hull`] |
 //! | worlds | [`csg`] recipe to solid, [`io`] values and bytes, [`plot`] curves and data to figures, [`render`] solids to pictures, [`script`] text to recipe |
 //! | shell | `cli`, `main.rs`: paths, clock, environment, terminal; only in the program |
@@ -52,6 +52,7 @@ pub mod par;
 pub mod curve;
 pub mod mesh;
 pub mod polygon;
+pub mod sdf;
 pub mod spatial;
 
 // verbs

@@ -8,6 +8,7 @@ mod build;
 mod builtins;
 mod check;
 mod diagnostic;
+mod eval;
 mod host;
 mod info;
 mod input;
@@ -53,6 +54,7 @@ enum Command {
     Render(Box<render::Args>),
     Plot(Box<plot::Args>),
     Boolean(boolean::Args),
+    Eval(eval::Args),
     Builtins(builtins::Args),
 }
 
@@ -65,6 +67,7 @@ impl Command {
             Command::Render(args) => render::run(args, terminal),
             Command::Plot(args) => plot::run(args, terminal),
             Command::Boolean(args) => boolean::run(args, terminal),
+            Command::Eval(args) => eval::run(args, terminal),
             Command::Builtins(args) => builtins::run(args),
         }
     }

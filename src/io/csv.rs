@@ -1,6 +1,9 @@
 //! Tables of text: comma-separated values and their kin.
 
-use super::{Place, Problem, ReadError};
+use super::text::Shortest;
+use super::{Place, Problem, ReadError, WriteError};
+use crate::math::Vec3;
+use std::io::{BufWriter, Write};
 
 /// Rows of cells under named columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -74,6 +77,47 @@ pub fn read(bytes: &[u8]) -> Result<Table, ReadError> {
     Ok(table)
 }
 
+/// Reads points, one a row of a table: x, y and z.
+///
+/// # Errors
+/// As [`read`], and [`Problem::Expected`] with its line for a row that is not three numbers.
+pub fn read_points(bytes: &[u8]) -> Result<Vec<Vec3>, ReadError> {
+    let table = read(bytes)?;
+    let point = |row: &Row| {
+        let wrong = |found| ReadError::line(row.line, Problem::Expected { expected: "three numbers", found });
+        let mut coordinates = [0.0; 3];
+        if row.cells.len() != 3 {
+            return Err(wrong(format!("{} cells", row.cells.len())));
+        }
+        for (slot, column) in coordinates.iter_mut().zip(0..) {
+            *slot = row.number(column)?.ok_or_else(|| wrong("an empty cell".to_owned()))?;
+        }
+        Ok(Vec3::from_array(coordinates))
+    };
+    table.rows.iter().map(point).collect()
+}
+
+/// Writes rows of numbers under a header, with the fewest digits that read back to the same bits.
+///
+/// # Errors
+/// What `out` reports.
+pub fn write<const N: usize>(
+    header: [&str; N],
+    rows: impl Iterator<Item = [f64; N]>,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    let mut out = BufWriter::with_capacity(1 << 16, out);
+    writeln!(out, "{}", header.join(","))?;
+    for row in rows {
+        for (i, &number) in row.iter().enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            write!(out, "{comma}{}", Shortest(number))?;
+        }
+        writeln!(out)?;
+    }
+    Ok(out.flush()?)
+}
+
 fn push(table: &mut Table, row: Row) -> Result<(), ReadError> {
     if table.columns.is_empty() {
         table.has_header = row.cells.iter().all(|cell| cell.parse::<f64>().is_err());
@@ -143,5 +187,38 @@ mod tests {
         );
         assert!(read(b"1,nan\n").unwrap().rows[0].number(1).is_err());
         assert!(read(b"\xff").is_err());
+    }
+
+    #[test]
+    fn points_as_others_write_them() {
+        let expected = vec![Vec3::new(1.0, 2.0, 3.0), Vec3::new(-0.5, 1e3, 0.0)];
+        for text in [
+            "1,2,3\n-0.5,1e3,0\n",
+            "x,y,z\r\n1, 2, 3\r\n-0.5, 1000, 0",
+            "\u{feff}\"x\";y;z\n1;2;3\n\n# c\n-.5;1e3;0",
+        ] {
+            assert_eq!(read_points(text.as_bytes()), Ok(expected.clone()), "{text}");
+        }
+        assert_eq!(read_points(b""), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn what_is_no_point_is_named_with_its_line() {
+        let cases = [
+            ("1,2", "line 1: expected three numbers, found `2 cells`"),
+            ("x,y,z\n1,2,three", "line 2: expected a number, found `three`"),
+            ("1,2,3,4", "line 1: expected three numbers, found `4 cells`"),
+            ("1,,3", "line 1: expected three numbers, found `an empty cell`"),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(read_points(text.as_bytes()).unwrap_err().to_string(), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_keep_their_bits() {
+        let mut bytes = Vec::new();
+        write(["a", "b"], [[0.1, f64::NAN], [-0.0, f64::INFINITY]].into_iter(), &mut bytes).expect("memory");
+        assert_eq!(String::from_utf8(bytes).expect("text"), "a,b\n0.1,NaN\n-0,inf\n");
     }
 }

@@ -166,6 +166,8 @@ pub enum WriteError {
         /// Its position.
         position: Vec3,
     },
+    /// A mesh, a polygon or another field is part of what should be a formula.
+    NotAFormula,
 }
 
 impl WriteError {
@@ -192,6 +194,12 @@ impl fmt::Display for WriteError {
                 let [x, y, z] = p.to_array().map(Shortest);
                 write!(f, "vertex {vertex} at ({x}, {y}, {z}) does not fit the format's f32")
             }
+            WriteError::NotAFormula => {
+                write!(
+                    f,
+                    "a mesh, a polygon or another field is part of it, which cannot be written as a formula"
+                )
+            }
         }
     }
 }
@@ -200,7 +208,9 @@ impl std::error::Error for WriteError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             WriteError::Io(error) => Some(error),
-            WriteError::NoSuchVertex { .. } | WriteError::NotInFormat { .. } => None,
+            WriteError::NoSuchVertex { .. } | WriteError::NotInFormat { .. } | WriteError::NotAFormula => {
+                None
+            }
         }
     }
 }

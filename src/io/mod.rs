@@ -10,7 +10,8 @@
 //!
 //! | SVG | paths and basic shapes; see [`svg`] | path data, same bits |
 //!
-//! Tables of numbers are read from CSV and lists of points from JSON; pictures are written as PNG.
+//! Tables of numbers are read from [`csv`] and lists of points from JSON; pictures are written as PNG; formulas
+//! ([`crate::sdf::Expr`]) are read and written in the text format of fidget and libfive ([`vm`]).
 //!
 //! Polygons become triangles in their own plane, also where they are not convex.
 
@@ -25,6 +26,7 @@ pub mod png;
 pub mod stl;
 pub mod svg;
 mod text;
+pub mod vm;
 mod weld;
 
 pub use error::{Place, Problem, ReadError, WriteError};

@@ -6,6 +6,7 @@
 mod aabb;
 mod blend;
 mod circle;
+mod interval;
 
 pub use aabb::Aabb;
 pub use blend::Blend;
@@ -14,6 +15,7 @@ pub use glam::{
     DAffine2 as Affine2, DAffine3 as Affine3, DMat2 as Mat2, DMat3 as Mat3, DMat4 as Mat4, DQuat as Quat,
     DVec2 as Vec2, DVec3 as Vec3, DVec4 as Vec4,
 };
+pub use interval::{Interval, LIBM_PLACES};
 pub use libm::{
     acos, asin, atan, atan2, cbrt, cos, cosh, exp, hypot, log as ln, log2, log10, pow, sin, sinh, tan, tanh,
 };

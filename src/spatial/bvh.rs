@@ -88,6 +88,73 @@ impl Bvh {
         });
     }
 
+    /// The item nearest to a point, given the square of the distance of each; of equal ones the first that is met. `None`
+    /// when there are no items, or no distance is a number.
+    pub fn nearest(
+        &self,
+        boxes: &[Aabb],
+        point: Vec3,
+        mut distance_squared: impl FnMut(u32) -> f64,
+    ) -> Option<u32> {
+        let away = |b: &Aabb| (point - point.clamp(b.min, b.max)).length_squared();
+        let (mut best, mut least) = (None, f64::INFINITY);
+        let mut stack: Vec<(f64, usize, usize)> =
+            self.root().into_iter().map(|(level, node)| (0.0, level, node)).collect();
+        while let Some((bound, level, node)) = stack.pop() {
+            if bound > least {
+                continue;
+            }
+            if level > 0 {
+                let mut below: Vec<(f64, usize, usize)> =
+                    self.children(level, node).map(|(l, n)| (away(&self.levels[l][n]), l, n)).collect();
+                // The nearer one last, to be looked at first.
+                below.sort_by(|a, b| b.0.total_cmp(&a.0));
+                stack.extend(below);
+                continue;
+            }
+            for &item in self.group(node) {
+                if away(&boxes[item as usize]) <= least {
+                    let distance = distance_squared(item);
+                    if distance < least || (best.is_none() && distance == least) {
+                        (best, least) = (Some(item), distance);
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// A value for each node, level by level from the leaves' groups up: of a group's items, then of the values of
+    /// the nodes below.
+    pub fn summed<T: Copy>(&self, group: impl Fn(&[u32]) -> T, join: impl Fn(&[T]) -> T) -> Vec<Vec<T>> {
+        let mut sums: Vec<Vec<T>> = Vec::with_capacity(self.levels.len());
+        for level in 0..self.levels.len() {
+            let nodes = 0..self.levels[level].len();
+            let here = match sums.last() {
+                None => nodes.map(|node| group(self.group(node))).collect(),
+                Some(below) => below.chunks(2).map(&join).collect(),
+            };
+            sums.push(here);
+        }
+        sums
+    }
+
+    /// Goes down from the root into every node for which `enter(level, node)` holds, numbered as in [`Bvh::summed`], and
+    /// calls `found` for the items of the groups it enters.
+    pub fn descend(&self, mut enter: impl FnMut(usize, usize) -> bool, mut found: impl FnMut(u32)) {
+        let mut stack = self.root();
+        while let Some((level, node)) = stack.pop() {
+            if !enter(level, node) {
+                continue;
+            }
+            if level > 0 {
+                stack.extend(self.children(level, node));
+            } else {
+                self.group(node).iter().for_each(|&item| found(item));
+            }
+        }
+    }
+
     fn root(&self) -> Vec<(usize, usize)> {
         if self.levels.is_empty() { Vec::new() } else { vec![(self.levels.len() - 1, 0)] }
     }
