@@ -153,7 +153,7 @@ proptest! {
 
     #[test]
     fn lengths_of_arcs_add_up(
-        power in 0..17, angle in -9.0..9.0_f64, sweep in 0.001..6.28_f64, at in 0.01..0.99_f64, turn in 0.0..7.0_f64,
+        power in 0..17, angle in -9.0..9.0_f64, sweep in 0.001..6.2_f64, at in 0.01..0.99_f64, turn in 0.0..7.0_f64,
     ) {
         let ratio = if power == 16 { 0.0 } else { ogee::math::pow(10.0, -f64::from(power)) };
         let turn = Mat2::from_angle(turn);
@@ -252,7 +252,7 @@ fn lengths_do_not_mind_a_far_origin() {
     let far = near.map(&Affine2::from_translation(Vec2::splat(67_108_864.0))).unwrap();
     for path in [near, far] {
         let found = path.length(1e-11).unwrap();
-        assert!((found.value - 141.217_498_362_787_715_22).abs() <= 1e-11, "{found:?}");
+        assert!((found.value - 141.217_498_362_787_72).abs() <= 1e-11, "{found:?}");
     }
 }
 
