@@ -2,7 +2,8 @@ use super::input::Source;
 use super::output::Place;
 use super::stop::Stop;
 use super::terminal::Terminal;
-use crate::io::{csv, vm};
+use crate::io::csv::{read_points, write as write_rows};
+use crate::io::vm;
 use crate::math::Vec3;
 use crate::sdf::{Field, Points, Tape};
 use clap::ValueHint;
@@ -46,10 +47,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let place = Place::typed(&args.output)?;
     let bytes = |source: &Source| source.bytes().map_err(|error| Stop::about(source, error));
     let formula = vm::read(&bytes(&model)?).map_err(|error| Stop::about(&model, error))?;
-    let places = csv::read_points(&bytes(&points)?).map_err(|error| Stop::about(&points, error))?;
+    let places = read_points(&bytes(&points)?).map_err(|error| Stop::about(&points, error))?;
     let tape = formula.compile();
     let rows = places.chunks(TOGETHER).flat_map(|part| evaluated(&tape, part));
-    place.write(|out| csv::write(["value", "dx", "dy", "dz"], rows, out))?;
+    place.write(|out| write_rows(["value", "dx", "dy", "dz"], rows, out))?;
     if place != Place::Stdout {
         terminal.note(format_args!("{place}: {} points, {} operations", places.len(), tape.len()));
     }

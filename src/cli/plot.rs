@@ -44,7 +44,7 @@ pub(super) struct Args {
     size: [u32; 2],
     /// What to show of curves, separated by commas: points, polygon, construction=T, tangents, normals, curvature, hull,
     /// box, inflections, intersections, joints
-    #[arg(long, value_name = "LIST", value_parser = show::parse, default_value = "")]
+    #[arg(long, value_name = "LIST", value_parser = show::parse, default_value = "", hide_default_value = true)]
     show: Show,
     /// Light on dark
     #[arg(long)]
@@ -53,7 +53,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "COLOR", value_parser = background)]
     background: Option<Background>,
     /// Title of the figure
-    #[arg(long, value_name = "TEXT", default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
     title: String,
     #[command(flatten, next_help_heading = "Axes")]
     axes: Axes,

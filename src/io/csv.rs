@@ -65,7 +65,7 @@ pub fn read(bytes: &[u8]) -> Result<Table, ReadError> {
     let mut table = Table::default();
     for record in reader.records() {
         let record = record.map_err(|error| malformed(&error))?;
-        let line = record.position().map_or(1, |position| position.line() as usize);
+        let line = record.position().map_or(1, |position| line_of(text, position));
         let cells = record.iter().map(|cell| cell.trim().to_owned());
         // Blanks may stand in any number between cells.
         let cells: Vec<String> = cells.filter(|cell| delimiter != b' ' || !cell.is_empty()).collect();
@@ -136,6 +136,13 @@ fn push(table: &mut Table, row: Row) -> Result<(), ReadError> {
     Ok(())
 }
 
+/// The line on which a record starts: its position is before the comments and blank lines above it.
+fn line_of(text: &str, position: &csv::Position) -> usize {
+    let rest = text.get(position.byte() as usize..).unwrap_or_default();
+    let above = rest.lines().take_while(|line| line.is_empty() || line.starts_with('#'));
+    position.line() as usize + above.count()
+}
+
 fn delimiter(text: &str) -> u8 {
     let first =
         text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
@@ -185,6 +192,8 @@ mod tests {
             table.rows[1].number(1).unwrap_err().to_string(),
             "line 4: expected a number, found `four`"
         );
+        let after = read(b"# one\n\n# two\nx,y\n# three\r\n\r\n1,2\n").unwrap();
+        assert_eq!(after.rows[0].line, 7);
         assert!(read(b"1,nan\n").unwrap().rows[0].number(1).is_err());
         assert!(read(b"\xff").is_err());
     }

@@ -97,7 +97,7 @@ mod tests {
             ("[[[0,0]],[[0,0],7]]", "line 1: point 1 of list 1: expected a point [x, y], found `7`"),
             ("[[0, 0],\n x]", "line 2, column 2: expected value"),
             ("", "line 1, column 1: EOF while parsing a value"),
-            ("[[1e999, 0]]", "line 1, column 8: number out of range"),
+            ("[[1e999, 0]]", "line 1, column 7: number out of range"),
         ] {
             assert_eq!(read_points(text.as_bytes()).unwrap_err().to_string(), expected, "{text}");
         }

@@ -140,28 +140,29 @@ fn framed<'a>(
     let labelled = |label: &str| if label.is_empty() { 0.0 } else { 1.7 * em };
     let top = if figure.title.is_empty() { 1.0 * em } else { 3.1 * em };
     let bottom = 2.3 * em + labelled(&figure.x.label) + extra[1];
-    let (mut left, mut right) = (4.0 * em, em + extra[0]);
+    let (mut left, mut right) = (em, em + extra[0]);
     let mut frame = Frame { figure, area: whole, low, high };
-    // Labels need room, and the room decides about labels.
-    for _ in 0..3 {
+    // Labels need room, and the room decides about labels; margins only grow, so that this ends.
+    for _ in 0..8 {
         let min = Vec2::new(left, top);
-        frame = Frame {
-            area: Area { min, max: (whole.max - Vec2::new(right, bottom)).max(min + 1.0) },
-            low,
-            high,
-            figure,
-        };
+        let max = (whole.max - Vec2::new(right, bottom)).max(min + 1.0);
+        frame = Frame { figure, area: Area { min, max }, low, high };
         if figure.equal {
             frame.equalize();
         }
         let [across, up] = frame.ticks(measures);
         let widest = up.iter().map(|tick| text::width(&tick.label, em)).fold(0.0, f64::max);
-        left = 1.1 * em + widest + labelled(&figure.y.label);
+        let needed = 1.1 * em + widest + labelled(&figure.y.label);
         let over = |tick: &Tick| {
             let end = frame.across(tick.place) + 0.5 * text::width(&tick.label, em);
             end - (whole.max.x - extra[0])
         };
-        right += across.iter().map(over).fold(0.0, f64::max).clamp(0.0, 3.0 * em);
+        let beyond = across.iter().map(over).fold(0.0, f64::max);
+        if needed <= left && beyond <= 0.0 {
+            break;
+        }
+        // A smaller frame moves its labels by less than it shrinks: a pixel more ends that soon.
+        (left, right) = (left.max(needed), right + if beyond > 0.0 { beyond + 1.0 } else { 0.0 });
     }
     frame
 }
@@ -295,7 +296,7 @@ impl Frame<'_> {
         let (figure, size, em) = (self.figure, self.area.size(), measures.text);
         let mut most = ((size.x / (3.6 * em)) as usize).clamp(2, 12);
         let mut across = ticks(figure.x.scale, self.low.x, self.high.x, most);
-        while most > 2 && !self.fit(&across, em) {
+        while most > 1 && !self.fit(&across, em) {
             most -= 1;
             across = ticks(figure.x.scale, self.low.x, self.high.x, most);
         }

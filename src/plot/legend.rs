@@ -46,6 +46,14 @@ impl Legend {
 
     pub(super) fn draw(&self, corner: Vec2, figure: &Figure, measures: Measures, items: &mut Vec<Item>) {
         let em = self.em;
+        let [r, g, b, opacity] = figure.theme.background;
+        if opacity > 0 {
+            // Lines of the grid shine through.
+            let far = corner + self.size;
+            let corners = [corner, Vec2::new(far.x, corner.y), far, Vec2::new(corner.x, far.y)];
+            let path = Path { subpaths: Subpath::polyline(&corners, true).into_iter().collect() };
+            items.push(Item::Fill { path, color: [r, g, b, 220] });
+        }
         for (row, (index, name)) in self.rows.iter().enumerate() {
             let middle = corner + Vec2::new(0.0, (1.6 * row as f64 + 1.05) * em);
             let [from, to] = [0.5, 2.3].map(|x| middle + Vec2::new(x * em, 0.0));

@@ -48,10 +48,7 @@ fn label(value: f64, exponent: i32, largest: f64) -> String {
     }
     let digits = (size - exponent).clamp(0, 15) as usize;
     let mantissa = format!("{:.*}", digits, value / power_of_ten(size));
-    match mantissa.as_str() {
-        "1" => format!("10{}", superscript(size)),
-        mantissa => format!("{}·10{}", minus(mantissa), superscript(size)),
-    }
+    format!("{}·10{}", minus(&mantissa), superscript(size))
 }
 
 fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {

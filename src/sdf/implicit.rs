@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// let both = ball.blend_union(&block, Blend::Circular { radius: 0.25 })?;
 /// assert_eq!(both.lipschitz(), Some(2.0_f64.sqrt()));
 /// assert!(!both.is_exact_outside());
-/// assert!(both.tape().value(Vec3::new(0.0, 1.0, 0.6)) < 0.0); // in the fillet
+/// assert!(both.tape().value(Vec3::new(0.0, 0.9, 0.52)) < 0.0); // in the fillet
 /// # Ok::<(), ogee::sdf::BadNumber>(())
 /// ```
 #[derive(Clone, Debug)]
