@@ -39,9 +39,7 @@ mod frame;
 mod interpolate;
 mod intersect;
 mod length;
-mod length_cubic;
 mod nearest;
-mod nearest_cubic;
 mod offset;
 mod path;
 mod pen;
@@ -207,6 +205,12 @@ fn check_finite<P: Blend>(points: &[P]) -> Result<(), CurveError> {
         Some(index) => Err(CurveError::NotFinite { index }),
         None => Ok(()),
     }
+}
+
+/// Checks that products of two such curves have binomials that do not overflow.
+fn check_degree(actual: usize) -> Result<(), CurveError> {
+    const MOST: usize = 500;
+    if actual <= MOST { Ok(()) } else { Err(CurveError::Degree { actual, most: MOST }) }
 }
 
 /// Checks that a tolerance or accuracy is a positive finite number.

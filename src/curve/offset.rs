@@ -155,12 +155,7 @@ impl Parallel {
         let mut found = Vec::new();
         self.cusps_between(0.0, 1.0, &mut found);
         // Neighbouring parts in which nothing can be told are one.
-        found.dedup_by(|b, a| {
-            b[0] == a[1] && {
-                a[1] = b[1];
-                true
-            }
-        });
+        found.dedup_by(|b, a| b[0] == a[1] && { a[1] = b[1]; true });
         let cusps = found.into_iter().map(|[low, high]| bracketed(|t| self.pace(t), low, high));
         cusps.filter(|&t| t > 0.0 && t < 1.0).collect()
     }

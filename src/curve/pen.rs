@@ -216,9 +216,7 @@ impl Pen {
                 }
                 Step::Stuck { from, to, .. } => {
                     match legs.last_mut() {
-                        Some(Leg::Turn(range)) if stretch.length_bound(range[0], to) <= point => {
-                            range[1] = to
-                        }
+                        Some(Leg::Turn(range)) if stretch.length_bound(range[0], to) <= point => range[1] = to,
                         _ => legs.push(Leg::Turn([from, to])),
                     }
                     at = to;

@@ -60,8 +60,9 @@ pub fn simplify(path: &Path, tolerance: f64, corner: f64) -> Result<Fitted<Path>
 
 /// The elements between corners.
 fn smooth_parts(strand: &Strand, corner: f64) -> impl Iterator<Item = &[Element]> {
-    let turns =
-        move |a: &Element, b: &Element| b.after_cusp || angle_between(a.tangents[1], b.tangents[0]) > corner;
+    let turns = move |a: &Element, b: &Element| {
+        b.after_cusp || angle_between(a.tangents[1], b.tangents[0]) > corner
+    };
     strand.elements.chunk_by(move |a, b| !turns(a, b))
 }
 

@@ -1,7 +1,7 @@
 //! What can be followed by cubics: curves that bound their own distance from one.
 
-use super::Fitted;
 use super::run::{Proxy, Run};
+use super::Fitted;
 use crate::curve::frame::UnitFrame;
 use crate::curve::{Bernstein, Bounds, Cubic, CurveError, Spline, check_tolerance};
 use crate::math::Vec2;
@@ -139,9 +139,7 @@ fn proxies<S: Source>(source: &S, from: f64, to: f64, tolerance: f64) -> Result<
         stuck.is_none()
     });
     match stuck {
-        Some(deviation) => {
-            Err(CurveError::ToleranceTooFine { value: tolerance / SHARE, finest: deviation / SHARE })
-        }
+        Some(deviation) => Err(CurveError::ToleranceTooFine { value: tolerance / SHARE, finest: deviation / SHARE }),
         None => Ok(run),
     }
 }
