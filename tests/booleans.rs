@@ -1,6 +1,6 @@
 //! What booleans promise beyond the right shape: errors, births, labels, the same bits in any order.
 
-use ogee::boolean::{self, BooleanError, Combined, Op, Operand, Tree, evaluate, evaluate_with, Options};
+use ogee::boolean::{self, BooleanError, Combined, Op, Operand, Options, Tree, evaluate, evaluate_with};
 use ogee::math::{Quat, Vec3};
 use ogee::mesh::{Mesh, Solid, cuboid, sphere};
 
@@ -130,5 +130,12 @@ fn a_grid_joins_what_misses_by_less() {
     let parts = [&a, &b];
     let tree = Tree::flat(Op::Union, 2);
     assert_eq!(evaluate(&tree, &parts).unwrap().solid.triangles().len(), 24);
-    assert_eq!(evaluate_with(&tree, &parts, &Options { resolution: 1e-10, ..Options::default() }).unwrap().solid.triangles().len(), 12);
+    assert_eq!(
+        evaluate_with(&tree, &parts, &Options { resolution: 1e-10, ..Options::default() })
+            .unwrap()
+            .solid
+            .triangles()
+            .len(),
+        12
+    );
 }

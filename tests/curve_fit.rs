@@ -24,7 +24,8 @@ impl Source for Wave {
         // The fourth derivative is at most 1; the cubic's x may be off by rounding.
         let [a, b, c, d] = cubic.to_array().map(|p| p.x);
         let third = (to - from) / 3.0;
-        let off = [a - from, b - from - third, c - to + third, d - to].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let off =
+            [a - from, b - from - third, c - to + third, d - to].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         (to - from).powi(4) / 384.0 + 2.0 * off + 1e-14
     }
 }
@@ -68,9 +69,8 @@ fn cubic(points: [(f64, f64); 4]) -> Cubic<Vec2> {
 
 /// The stability cases, of size about 100.
 fn hard_cases() -> Vec<(&'static str, Path)> {
-    let one = |points: [(f64, f64); 4]| Path {
-        subpaths: vec![Subpath::open(vec![cubic(points).into()]).unwrap()],
-    };
+    let one =
+        |points: [(f64, f64); 4]| Path { subpaths: vec![Subpath::open(vec![cubic(points).into()]).unwrap()] };
     let closed = |points: [(f64, f64); 4]| Path {
         subpaths: vec![Subpath::closed(vec![cubic(points).into()]).unwrap()],
     };
@@ -94,18 +94,34 @@ fn hard_cases() -> Vec<(&'static str, Path)> {
         ("all points equal", one([(5.0, 5.0); 4])),
         ("tight bend", one([(0.0, 0.0), (100.0, 3.0), (100.0, 3.0), (0.0, 6.0)])),
         ("drop", closed([(0.0, 0.0), (120.0, 100.0), (-120.0, 100.0), (0.0, 0.0)])),
-        ("zigzag", polyline(&[(0.0, 0.0), (50.0, 5.0), (2.0, 10.0), (60.0, 60.0), (60.0, 60.0), (61.0, 0.0)], false)),
+        (
+            "zigzag",
+            polyline(&[(0.0, 0.0), (50.0, 5.0), (2.0, 10.0), (60.0, 60.0), (60.0, 60.0), (61.0, 0.0)], false),
+        ),
         ("triangle", polyline(&[(0.0, 0.0), (60.0, 0.0), (30.0, 50.0)], true)),
         ("there and back", polyline(&[(0.0, 0.0), (50.0, 0.0), (0.0, 0.0)], false)),
-        ("small steps", polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (1.5, 0.2), (40.0, 0.0)], false)),
-        ("circle", Path {
-            subpaths: vec![Subpath::closed(vec![Arc::ellipse(Vec2::ONE, Vec2::splat(20.0)).unwrap().into()]).unwrap()],
-        }),
-        ("ellipse", Path {
-            subpaths: vec![
-                Subpath::closed(vec![Arc::ellipse(Vec2::ONE, Vec2::new(50.0, 4.0)).unwrap().into()]).unwrap(),
-            ],
-        }),
+        (
+            "small steps",
+            polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (1.5, 0.2), (40.0, 0.0)], false),
+        ),
+        (
+            "circle",
+            Path {
+                subpaths: vec![
+                    Subpath::closed(vec![Arc::ellipse(Vec2::ONE, Vec2::splat(20.0)).unwrap().into()])
+                        .unwrap(),
+                ],
+            },
+        ),
+        (
+            "ellipse",
+            Path {
+                subpaths: vec![
+                    Subpath::closed(vec![Arc::ellipse(Vec2::ONE, Vec2::new(50.0, 4.0)).unwrap().into()])
+                        .unwrap(),
+                ],
+            },
+        ),
     ]
 }
 
@@ -188,7 +204,11 @@ fn a_parallel_is_at_its_distance_from_both_sides() {
                     for k in 0..=60 {
                         if let Some(p) = parallel_point(curve, f64::from(k) / 60.0, distance) {
                             let off = distance_to(&drawn, p);
-                            assert!(off <= parallel.error + 1e-8, "{name} {distance}: {p} is {off} off");
+                            assert!(
+                                off <= parallel.error + 1e-8,
+                                "{name} {distance}: {p} is {off} off, {} of {tolerance}",
+                                parallel.error
+                            );
                         }
                     }
                 }
@@ -235,10 +255,16 @@ fn wrong_input_is_named() {
         assert!(same(fit(&Wave, tolerance).unwrap_err()));
     }
     let fine = offset(&line, 1.0, Join::Bevel, 1e-17).unwrap_err();
-    assert!(matches!(fine, CurveError::ToleranceTooFine { value: 1e-17, finest } if finest < 1e-12), "{fine}");
+    assert!(
+        matches!(fine, CurveError::ToleranceTooFine { value: 1e-17, finest } if finest < 1e-12),
+        "{fine}"
+    );
     assert!(matches!(fit(&Wave, 1e-13), Err(CurveError::ToleranceTooFine { .. })));
     assert!(matches!(simplify(&line, 0.1, f64::NAN), Err(CurveError::Parameter { .. })));
-    assert_eq!(offset(&line, f64::INFINITY, Join::Bevel, 0.1), Err(CurveError::Distance { value: f64::INFINITY }));
+    assert_eq!(
+        offset(&line, f64::INFINITY, Join::Bevel, 0.1),
+        Err(CurveError::Distance { value: f64::INFINITY })
+    );
     assert_eq!(
         offset(&line, 1.0, Join::Miter { limit: 0.5 }, 0.1),
         Err(CurveError::Parameter { value: 0.5 })
@@ -256,7 +282,9 @@ fn wrong_input_is_named() {
 #[test]
 fn joins_caps_and_dashes() {
     let corner = Path {
-        subpaths: vec![Subpath::polyline(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)].map(Vec2::from), false).unwrap()],
+        subpaths: vec![
+            Subpath::polyline(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)].map(Vec2::from), false).unwrap(),
+        ],
     };
     let area = |join: Join, cap: Cap, dashes: &[f64]| {
         let style = Stroke { width: 2.0, join, cap, dashes: dashes.to_vec(), phase: 0.0 };
@@ -285,7 +313,8 @@ fn joins_caps_and_dashes() {
     // A closed square whose first dash prolongs its last.
     let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(Vec2::from);
     let square = Path { subpaths: vec![Subpath::polyline(&square, true).unwrap()] };
-    let style = Stroke { dashes: vec![10.0], phase: 5.0, join: Join::Bevel, cap: Cap::Butt, ..Stroke::round(2.0) };
+    let style =
+        Stroke { dashes: vec![10.0], phase: 5.0, join: Join::Bevel, cap: Cap::Butt, ..Stroke::round(2.0) };
     let outline = stroke(&square, &style, 1e-6).unwrap().curve;
     near((outline.area(), outline.subpaths.len()), 41.0, 2);
 }

@@ -270,7 +270,14 @@ impl Rims {
     }
 
     /// Whether a rim and the next one are one straight edge between two faces that both pass its middle once.
-    fn runs_on(&self, scene: &Scene<'_>, carriers: &Carriers, faces: &Faces, rim: usize, once: &[bool]) -> bool {
+    fn runs_on(
+        &self,
+        scene: &Scene<'_>,
+        carriers: &Carriers,
+        faces: &Faces,
+        rim: usize,
+        once: &[bool],
+    ) -> bool {
         let here = &self.rims[rim];
         let next = &self.rims[here.next as usize];
         if here.twin == NONE || next.twin == NONE {

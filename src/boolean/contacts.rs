@@ -8,8 +8,8 @@
 use super::pairs::candidates;
 use super::scene::Scene;
 use super::world::NONE;
-use crate::numeric::DisjointSets;
 use crate::math::Vec3;
+use crate::numeric::DisjointSets;
 use crate::polygon::exact::{Plane, PointId, Points};
 use std::cmp::Ordering;
 
@@ -174,8 +174,10 @@ impl Finder {
         sections: [&Section; 2],
     ) {
         let stop = |at: PointId, kind: StopKind| Stop { triangles, at, kind };
-        let past_start = |p: PointId, section: &Section| direction.distance(scene, p, section.start, section, 1);
-        let before_end = |p: PointId, section: &Section| direction.distance(scene, p, section.end, section, -1);
+        let past_start =
+            |p: PointId, section: &Section| direction.distance(scene, p, section.start, section, 1);
+        let before_end =
+            |p: PointId, section: &Section| direction.distance(scene, p, section.end, section, -1);
         let mut found: [Option<Stop>; 2] = [None; 2];
         for (own, other) in [(sections[0], sections[1]), (sections[1], sections[0])] {
             if let End::Point(p) = own.start
@@ -345,7 +347,8 @@ fn sides(scene: &mut Scene<'_>, of: u32, triangle: u32) -> [i32; 3] {
     let own = scene.corners[of as usize];
     let corners = scene.corners[triangle as usize];
     let slope = Slope::new(scene.points(), own);
-    let quick = corners.map(|p| if own.contains(&p) { Some(0) } else { slope.side(scene.points().rounded(p)) });
+    let quick =
+        corners.map(|p| if own.contains(&p) { Some(0) } else { slope.side(scene.points().rounded(p)) });
     if let [Some(a), Some(b), Some(c)] = quick {
         return [a, b, c];
     }

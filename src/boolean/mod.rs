@@ -187,7 +187,8 @@ fn topology_of(index: usize, operand: &Operand<'_>) -> Result<Topology, BooleanE
     let is_sound = |&[a, b, c]: &[u32; 3]| {
         a != b && b != c && c != a && [a, b, c].iter().all(|&v| (v as usize) < positions.len())
     };
-    let simple = operand.checked || (triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()));
+    let simple =
+        operand.checked || (triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()));
     if simple {
         let topology = Topology::new(triangles);
         if operand.checked || topology.is_closed() {

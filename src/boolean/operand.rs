@@ -1,5 +1,5 @@
-use crate::mesh::{Mesh, Solid};
 use super::world::Labels;
+use crate::mesh::{Mesh, Solid};
 
 /// An operand of a boolean: a mesh and what is known of it.
 #[derive(Clone, Copy, Debug)]

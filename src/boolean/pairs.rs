@@ -172,7 +172,9 @@ impl Grid {
         let size = bounds.size();
         let longest = size.max_element();
         let cells = cbrt(triangles as f64).ceil().min(MOST);
-        let count = |extent: f64| if longest > 0.0 { (cells * extent / longest).ceil().clamp(1.0, MOST) } else { 1.0 };
+        let count = |extent: f64| {
+            if longest > 0.0 { (cells * extent / longest).ceil().clamp(1.0, MOST) } else { 1.0 }
+        };
         let counts = Vec3::from_array(size.to_array().map(count));
         let scale = counts / size;
         let scale = Vec3::from_array(scale.to_array().map(|s| if s.is_finite() { s } else { 0.0 }));

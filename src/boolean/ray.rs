@@ -140,7 +140,8 @@ impl Start {
         let (along, place) = (to - from, self.rounded - from);
         let (left, right) = (along.x * place.y, along.y * place.x);
         // Bounds on the errors of `along` and `place`, and from them on that of the difference.
-        let slack = |i: usize| self.error + 2.0 * UNIT * (self.rounded[i].abs() + from[i].abs() + to[i].abs());
+        let slack =
+            |i: usize| self.error + 2.0 * UNIT * (self.rounded[i].abs() + from[i].abs() + to[i].abs());
         let (dx, dy) = (slack(0), slack(1));
         let (along_size, place_size) = (along.abs(), place.abs());
         let error = (along_size.x + place_size.x + dx) * dy + (along_size.y + place_size.y + dy) * dx;

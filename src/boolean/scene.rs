@@ -162,7 +162,9 @@ impl<'a> Scene<'a> {
     /// of the solid but only of its triangulation.
     pub(super) fn goes_on(&self, half_edge: u32, plane: &Plane) -> bool {
         let (twin, t) = (self.twins[half_edge as usize], half_edge / 3);
-        if twin == NONE || self.world.label(self.births[t as usize]) != self.world.label(self.births[twin as usize / 3]) {
+        if twin == NONE
+            || self.world.label(self.births[t as usize]) != self.world.label(self.births[twin as usize / 3])
+        {
             return false;
         }
         if let (Some(here), Some(there)) = (self.facing(t), self.facing(twin / 3)) {

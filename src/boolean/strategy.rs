@@ -5,15 +5,20 @@
 //! groups at a time, neighbours first, and what is buried is dropped early. Both give the same points, as all steps are
 //! exact.
 
-use super::{Steps, arrange};
 use super::body::Body;
 use super::tree::{Op, Tree};
 use super::world::World;
+use super::{Steps, arrange};
 use crate::math::Aabb;
 use crate::spatial::Bvh;
 
 /// Evaluates an expression of bodies.
-pub(super) fn evaluate<'a>(world: World<'a>, bodies: Vec<Body>, tree: &Tree, steps: Steps) -> (World<'a>, Body) {
+pub(super) fn evaluate<'a>(
+    world: World<'a>,
+    bodies: Vec<Body>,
+    tree: &Tree,
+    steps: Steps,
+) -> (World<'a>, Body) {
     let tree = &tree.flattened();
     let mut uses = vec![0_u32; bodies.len()];
     tree.leaves().into_iter().for_each(|(leaf, times)| uses[leaf] = times);
@@ -84,7 +89,9 @@ impl Kitchen<'_> {
             parts.push(rest);
             return self.arrange(parts, &Tree::flat(op, 2));
         }
-        if parts.len() <= 2 || (self.steps == Steps::Measured && self.is_shallow(&parts.iter().collect::<Vec<_>>())) {
+        if parts.len() <= 2
+            || (self.steps == Steps::Measured && self.is_shallow(&parts.iter().collect::<Vec<_>>()))
+        {
             let tree = Tree::flat(op, parts.len());
             return self.arrange(parts, &tree);
         }
@@ -131,7 +138,8 @@ fn overlap(a: Aabb, b: Aabb) -> bool {
 
 /// Takes out the half of the bodies that lies further along the axis on which they are most spread.
 fn split_by_place(bodies: &mut Vec<Body>) -> Vec<Body> {
-    let size = Aabb::of(bodies.iter().filter(|body| !body.is_empty()).map(|body| body.bounds.center())).size();
+    let size =
+        Aabb::of(bodies.iter().filter(|body| !body.is_empty()).map(|body| body.bounds.center())).size();
     let axis = (0..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best });
     let place = |body: &Body| body.bounds.center()[axis];
     bodies.sort_by(|a, b| place(a).total_cmp(&place(b)));

@@ -61,7 +61,9 @@ impl Tree {
             };
             match part.flattened() {
                 Tree::Node(inner, inner_parts) if merges && inner == *op => flat.extend(inner_parts),
-                Tree::Node(Op::Union, inner_parts) if *op == Op::Difference && place > 0 => flat.extend(inner_parts),
+                Tree::Node(Op::Union, inner_parts) if *op == Op::Difference && place > 0 => {
+                    flat.extend(inner_parts);
+                }
                 other => flat.push(other),
             }
         }
@@ -223,8 +225,14 @@ mod tests {
             node(Difference, vec![node(Difference, vec![]), leaf(1)]),
             node(Intersection, vec![leaf(0), node(Intersection, vec![leaf(1), leaf(3)])]),
             node(Intersection, vec![leaf(0), node(Intersection, vec![])]),
-            node(SymmetricDifference, vec![leaf(0), node(SymmetricDifference, vec![leaf(1), leaf(1), leaf(2)])]),
-            node(Union, vec![node(Difference, vec![leaf(3), node(Difference, vec![leaf(0), leaf(1)])]), leaf(2)]),
+            node(
+                SymmetricDifference,
+                vec![leaf(0), node(SymmetricDifference, vec![leaf(1), leaf(1), leaf(2)])],
+            ),
+            node(
+                Union,
+                vec![node(Difference, vec![leaf(3), node(Difference, vec![leaf(0), leaf(1)])]), leaf(2)],
+            ),
             node(Difference, vec![leaf(0), node(Intersection, vec![leaf(1), leaf(2)]), leaf(0)]),
         ]
     }

@@ -210,7 +210,11 @@ impl<'a, 'b> Solver<'a, 'b> {
         let materials = materials(parts);
         let operands: Vec<Operand<'_>> =
             parts.iter().zip(&materials).map(|(part, &m)| part.operand().with_material(m)).collect();
-        let combined = boolean::evaluate_with(tree, &operands, &boolean::Options { resolution: self.resolution, ..Default::default() })?;
+        let combined = boolean::evaluate_with(
+            tree,
+            &operands,
+            &boolean::Options { resolution: self.resolution, ..Default::default() },
+        )?;
         self.report.booleans += 1;
         self.step();
         self.check_limit(combined.solid.triangles().len() as u64)?;

@@ -49,7 +49,7 @@ impl Source for Evolute<'_> {
         let (part, factor, direction) = self.0.part(from, to);
         let turn = product_with(&direction, &derivative(&direction, 1), Vec2::perp_dot);
         let least = turn.iter().map(|c| c * turn[0].signum()).fold(f64::INFINITY, f64::min);
-        if !(least > 0.0) {
+        if least.is_nan() || least <= 0.0 {
             return f64::INFINITY;
         }
         let times = |a: &[f64], b: &[f64]| product_with(a, b, |x, y| x * y);

@@ -155,7 +155,12 @@ impl Parallel {
         let mut found = Vec::new();
         self.cusps_between(0.0, 1.0, &mut found);
         // Neighbouring parts in which nothing can be told are one.
-        found.dedup_by(|b, a| b[0] == a[1] && { a[1] = b[1]; true });
+        found.dedup_by(|b, a| {
+            b[0] == a[1] && {
+                a[1] = b[1];
+                true
+            }
+        });
         let cusps = found.into_iter().map(|[low, high]| bracketed(|t| self.pace(t), low, high));
         cusps.filter(|&t| t > 0.0 && t < 1.0).collect()
     }
@@ -224,7 +229,8 @@ impl Source for Parallel {
         let middle = direction[0] + direction[1] * 2.0 + direction[2];
         let slowest = direction.iter().map(|t| t.dot(middle)).fold(f64::INFINITY, f64::min) / middle.length();
         let sided = product(&direction, &offset, Vec2::perp_dot);
-        if !(slowest > 0.0) || far == 0.0 || sided.iter().any(|c| c * self.distance <= 0.0) {
+        if slowest.is_nan() || slowest <= 0.0 || far == 0.0 || sided.iter().any(|c| c * self.distance <= 0.0)
+        {
             return plain;
         }
         let along = product(&direction, &offset, Vec2::dot);

@@ -216,7 +216,9 @@ impl Pen {
                 }
                 Step::Stuck { from, to, .. } => {
                     match legs.last_mut() {
-                        Some(Leg::Turn(range)) if stretch.length_bound(range[0], to) <= point => range[1] = to,
+                        Some(Leg::Turn(range)) if stretch.length_bound(range[0], to) <= point => {
+                            range[1] = to;
+                        }
                         _ => legs.push(Leg::Turn([from, to])),
                     }
                     at = to;
@@ -384,7 +386,7 @@ fn middle(a: Vec2, b: Vec2) -> Vec2 {
 /// [`CurveError::Parameter`] for a miter limit below 1 or NaN.
 pub(super) fn check_join(join: Join) -> Result<(), CurveError> {
     match join {
-        Join::Miter { limit } if !(limit >= 1.0) => Err(CurveError::Parameter { value: limit }),
+        Join::Miter { limit } if limit.is_nan() || limit < 1.0 => Err(CurveError::Parameter { value: limit }),
         _ => Ok(()),
     }
 }

@@ -30,7 +30,7 @@ use crate::math::Vec2;
 /// [`CurveError::Tolerance`], [`CurveError::ToleranceTooFine`] below the rounding of the coordinates,
 /// [`CurveError::Parameter`] when `corner` is negative or NaN.
 pub fn simplify(path: &Path, tolerance: f64, corner: f64) -> Result<Fitted<Path>, CurveError> {
-    if !(corner >= 0.0) {
+    if corner.is_nan() || corner < 0.0 {
         return Err(CurveError::Parameter { value: corner });
     }
     super::check_tolerance(tolerance)?;
@@ -60,9 +60,8 @@ pub fn simplify(path: &Path, tolerance: f64, corner: f64) -> Result<Fitted<Path>
 
 /// The elements between corners.
 fn smooth_parts(strand: &Strand, corner: f64) -> impl Iterator<Item = &[Element]> {
-    let turns = move |a: &Element, b: &Element| {
-        b.after_cusp || angle_between(a.tangents[1], b.tangents[0]) > corner
-    };
+    let turns =
+        move |a: &Element, b: &Element| b.after_cusp || angle_between(a.tangents[1], b.tangents[0]) > corner;
     strand.elements.chunk_by(move |a, b| !turns(a, b))
 }
 

@@ -416,13 +416,8 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
 #[inline]
 fn product_down(a: f64, b: f64) -> f64 {
     let product = a * b;
-    if a == 0.0 || b == 0.0 {
-        0.0
-    } else if product == 0.0 && product.is_sign_positive() {
-        0.0
-    } else {
-        product.next_down()
-    }
+    let vanishes = product == 0.0 && product.is_sign_positive();
+    if a == 0.0 || b == 0.0 || vanishes { 0.0 } else { product.next_down() }
 }
 
 /// The product rounded up, where zero times infinity is zero.

@@ -63,7 +63,7 @@ impl MeshField {
         let bvh = Bvh::new(&boxes);
         let dipoles = bvh.summed(
             |items| Dipole::of_triangles(items.iter().map(|&i| corners[i as usize])),
-            |parts| Dipole::of_parts(parts),
+            Dipole::of_parts,
         );
         let bounds = mesh.bounds();
         Ok(MeshField { corners, normals, boxes, bvh, dipoles, bounds })

@@ -473,12 +473,12 @@ fn greatest_stretch(map: Mat3) -> f64 {
         let t = slope.signum() / (slope.abs() + (slope * slope + 1.0).sqrt());
         let cosine = 1.0 / (t * t + 1.0).sqrt();
         let sine = t * cosine;
-        for k in 0..3 {
-            (s[k][p], s[k][q]) = (cosine * s[k][p] - sine * s[k][q], sine * s[k][p] + cosine * s[k][q]);
+        for row in &mut s {
+            (row[p], row[q]) = (cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]);
         }
-        for k in 0..3 {
-            (s[p][k], s[q][k]) = (cosine * s[p][k] - sine * s[q][k], sine * s[p][k] + cosine * s[q][k]);
-        }
+        let (above, below) = (s[p], s[q]);
+        s[p] = [0, 1, 2].map(|k| cosine * above[k] - sine * below[k]);
+        s[q] = [0, 1, 2].map(|k| sine * above[k] + cosine * below[k]);
     }
     s[0][0].max(s[1][1]).max(s[2][2]).sqrt()
 }

@@ -162,9 +162,9 @@ impl Implicit {
     ) -> Implicit {
         let own = self.lipschitz();
         let steep = slope(margin) * own.unwrap_or(1.0).max(1.0) * (1.0 + 64.0 * f64::EPSILON);
-        let confined = self.expr().max(&box_around(bounds)).min(margin);
+        let confined = self.expr().max(box_around(bounds)).min(margin);
         let inner = confined.at(map) * (1.0 / steep);
-        let whole = inner.max(&box_around(enclosure));
+        let whole = inner.max(box_around(enclosure));
         self.with_expr(whole).with_lipschitz(own.map(|_| 1.0 + 64.0 * f64::EPSILON)).with_bounds(enclosure)
     }
 }

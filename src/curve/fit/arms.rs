@@ -89,9 +89,8 @@ fn positive_roots(powers: &[f64]) -> Vec<f64> {
     let degree = powers.len() - 1;
     let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
     let scaled: Vec<f64> = (0..=degree).map(|k| powers[k] * LONGEST.powi(k as i32)).collect();
-    let bernstein: Vec<f64> = (0..=degree)
-        .map(|i| (0..=i).map(|k| choose(i, k) / choose(degree, k) * scaled[k]).sum())
-        .collect();
+    let bernstein: Vec<f64> =
+        (0..=degree).map(|i| (0..=i).map(|k| choose(i, k) / choose(degree, k) * scaled[k]).sum()).collect();
     let size: f64 = scaled.iter().map(|c| c.abs()).sum();
     roots(&bernstein, 8.0 * f64::EPSILON * size).isolated().into_iter().map(|root| root.t * LONGEST).collect()
 }

@@ -56,7 +56,8 @@ impl Matching<'_> {
             return None;
         }
         let (left, right) = halves(piece);
-        let middle = opposite(self.cubic, &left, halves(&pace).1[0], t[0]).filter(|&middle| middle <= t[1])?;
+        let middle =
+            opposite(self.cubic, &left, halves(&pace).1[0], t[0]).filter(|&middle| middle <= t[1])?;
         let first = self.bound(&left, [t[0], middle], halvings - 1)?;
         let second = self.bound(&right, [middle, t[1]], halvings - 1)?;
         Some(first.max(second))
@@ -123,8 +124,10 @@ fn difference(cubic: &[Vec2; 4], pace: &[f64; 4], piece: &[Vec2; 4]) -> [Vec2; 1
 /// C(3, i) C(3, j) / C(6, i + j).
 const BY_3_3: [[f64; 4]; 4] = weights([1.0, 3.0, 3.0, 1.0], [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0]);
 /// C(3, i) C(6, j) / C(9, i + j).
-const BY_3_6: [[f64; 7]; 4] =
-    weights([1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0], [1.0, 9.0, 36.0, 84.0, 126.0, 126.0, 84.0, 36.0, 9.0, 1.0]);
+const BY_3_6: [[f64; 7]; 4] = weights(
+    [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0],
+    [1.0, 9.0, 36.0, 84.0, 126.0, 126.0, 84.0, 36.0, 9.0, 1.0],
+);
 
 const fn weights<const N: usize, const M: usize>(inner: [f64; N], whole: [f64; M]) -> [[f64; N]; 4] {
     let thirds = [1.0, 3.0, 3.0, 1.0];
@@ -191,11 +194,11 @@ fn largest(points: &[Vec2; 10], seen: f64, limit: f64, halvings: u32) -> f64 {
 /// Both halves of a curve.
 fn halves<P: Blend, const N: usize>(points: &[P; N]) -> ([P; N], [P; N]) {
     let (mut left, mut right) = (*points, *points);
-    for level in 1..N {
+    for (level, point) in left.iter_mut().enumerate().skip(1) {
         for i in 0..N - level {
             right[i] = (right[i] + right[i + 1]) * 0.5;
         }
-        left[level] = right[0];
+        *point = right[0];
     }
     (left, right)
 }

@@ -123,7 +123,8 @@ impl Run {
             if best.0 >= end || too_long - best.0 <= 0.01 * (best.0 - from) {
                 break;
             }
-            let to = if from + 1.02 * step >= end.min(too_long) && too_long > end { end } else { from + step };
+            let to =
+                if from + 1.02 * step >= end.min(too_long) && too_long > end { end } else { from + step };
             match self.fit(from, to, limit) {
                 Some(proxy) => {
                     let fill = proxy.error / limit;

@@ -1,7 +1,7 @@
 //! What can be followed by cubics: curves that bound their own distance from one.
 
-use super::run::{Proxy, Run};
 use super::Fitted;
+use super::run::{Proxy, Run};
 use crate::curve::frame::UnitFrame;
 use crate::curve::{Bernstein, Bounds, Cubic, CurveError, Spline, check_tolerance};
 use crate::math::Vec2;
@@ -90,10 +90,10 @@ pub fn fit<S: Source>(source: &S, tolerance: f64) -> Result<Fitted<Spline<Vec2>>
     let (mut cubics, mut error) = (Vec::<Cubic<Vec2>>::new(), 0.0_f64);
     for run in &runs {
         let ends = [run.start(), run.end()];
-        if let Some(gap) = cubics.last().map(|last| (ends[0] - last.end()).abs().max_element()) {
-            if frame.length_inward(gap) > 0.25 * frame.rounding() {
-                return Err(CurveError::Gap { piece: cubics.len() });
-            }
+        if let Some(gap) = cubics.last().map(|last| (ends[0] - last.end()).abs().max_element())
+            && frame.length_inward(gap) > 0.25 * frame.rounding()
+        {
+            return Err(CurveError::Gap { piece: cubics.len() });
         }
         for proxy in run.inward(&frame).fitted(limit) {
             error = error.max(proxy.error);
@@ -139,7 +139,9 @@ fn proxies<S: Source>(source: &S, from: f64, to: f64, tolerance: f64) -> Result<
         stuck.is_none()
     });
     match stuck {
-        Some(deviation) => Err(CurveError::ToleranceTooFine { value: tolerance / SHARE, finest: deviation / SHARE }),
+        Some(deviation) => {
+            Err(CurveError::ToleranceTooFine { value: tolerance / SHARE, finest: deviation / SHARE })
+        }
         None => Ok(run),
     }
 }
