@@ -2,10 +2,10 @@
 
 use super::Combined;
 use super::body::Body;
-use super::world::{NONE, World};
+use super::world::{Lookup, NONE, World};
 use crate::math::Vec3;
 use crate::mesh::{Mesh, Solid, fans};
-use crate::polygon::exact::{Plane, PointId};
+use crate::polygon::exact::{Origin, Plane, PointId};
 
 impl World<'_> {
     /// The solid that a body stands for.
@@ -22,8 +22,55 @@ impl World<'_> {
             && !is_parted
             && self.places.is_exact()
             && body.corners.iter().flatten().all(is_given);
+        let origin = self.origin_of(&body, &vertices, count, body.embedded && !is_parted);
         let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
-        Combined { solid: Solid::assume(mesh, embedded), birth: body.births }
+        Combined { solid: Solid::assume(mesh, embedded).rounded_from(origin), birth: body.births }
+    }
+
+    /// What the positions of a body with numbered corners do not say; `None` when they say everything.
+    fn origin_of(&self, body: &Body, vertices: &[u32], count: u32, embedded: bool) -> Option<Origin> {
+        let mut origin = Origin::on(self.places.lattice(), embedded);
+        let mut points = vec![PointId(NONE); count as usize];
+        for (&point, &vertex) in body.corners.iter().flatten().zip(vertices) {
+            points[vertex as usize] = point;
+        }
+        for (vertex, &point) in (0..).zip(&points) {
+            if let Some(place) = self.places.hidden_place(point) {
+                origin.add(vertex, place);
+            }
+        }
+        let is_fraction = |point: &PointId| self.points().as_site(*point).is_none();
+        let mut planes = Numbers::default();
+        for (t, corners) in (0..).zip(&body.corners) {
+            if corners.iter().any(is_fraction) {
+                let facing = body.facings[t as usize];
+                origin.faces.push((t, planes.number(facing.plane()), facing.is_with_plane()));
+            }
+        }
+        origin.planes = planes.known.iter().map(|&index| *self.plane(index)).collect();
+        let mut lines = Numbers::default();
+        for (half_edge, &line) in (0..).zip(&body.lines).filter(|(_, line)| **line != NONE) {
+            origin.sides.push((half_edge, lines.number(line)));
+        }
+        origin.lines = lines.known.iter().map(|&index| self.lines[index as usize]).collect();
+        let says_something = !(origin.sites.is_empty() && origin.fractions.is_empty());
+        says_something.then_some(origin)
+    }
+}
+
+/// New numbers for some indices, in the order in which they come.
+#[derive(Default)]
+struct Numbers {
+    of: Lookup<u32, u32>,
+    known: Vec<u32>,
+}
+
+impl Numbers {
+    fn number(&mut self, index: u32) -> u32 {
+        *self.of.entry(index).or_insert_with(|| {
+            self.known.push(index);
+            self.known.len() as u32 - 1
+        })
     }
 }
 
