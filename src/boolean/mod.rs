@@ -21,17 +21,20 @@ mod arrive;
 mod assemble;
 mod body;
 mod carriers;
+mod certificate;
 mod contacts;
 mod leave;
 mod operand;
 mod pairs;
 mod ray;
 mod regions;
+mod repair;
 mod scene;
 mod strategy;
 mod tree;
 mod world;
 
+pub use certificate::Certificate;
 pub use operand::Operand;
 pub use tree::{Op, Tree};
 
@@ -47,6 +50,8 @@ pub struct Combined {
     pub solid: Solid,
     /// For each triangle of `solid`, where it came from.
     pub birth: Vec<Birth>,
+    /// What is known of `solid`.
+    pub certificate: Certificate,
 }
 
 /// Where a triangle of a result came from.
@@ -164,7 +169,7 @@ where
     }
     let (world, bodies) = arrive::enter(&operands, options.resolution)?;
     let (world, body) = strategy::evaluate(world, bodies, tree, options.steps);
-    Ok(world.solid_of(body))
+    Ok(certificate::certify(world.round(body), &operands))
 }
 
 /// Evaluates an expression of bodies in one arrangement.
