@@ -6,6 +6,7 @@ use super::tree::Tree;
 use super::world::Labels;
 use super::{Birth, Combined, Operand, Steps, arrive, strategy};
 use crate::mesh::{Mesh, Solid, crossing_pairs};
+use crate::polygon::exact::Origin;
 
 /// What a result is known to be. That it is closed and two-manifold is part of what a [`Solid`] is.
 ///
@@ -73,10 +74,12 @@ pub(super) fn certify(rounded: Rounded, operands: &[Operand<'_>]) -> Combined {
     Combined { solid, birth, certificate }
 }
 
-/// Triangles with a vertex that is not where it is exactly, in order.
-fn moved_triangles(mesh: &Mesh, origin: &crate::polygon::exact::Origin) -> Vec<u32> {
+/// Triangles with a vertex that leaving the lattice has moved, in order. Vertices of operands went the other way.
+fn moved_triangles(mesh: &Mesh, origin: &Origin) -> Vec<u32> {
     let mut is_moved = vec![false; mesh.positions.len()];
-    origin.sites.iter().for_each(|&(vertex, _)| is_moved[vertex as usize] = true);
+    for &(vertex, site) in &origin.sites {
+        is_moved[vertex as usize] = origin.lattice.snap(mesh.positions[vertex as usize]) != site;
+    }
     origin.fractions.iter().for_each(|&(vertex, _)| is_moved[vertex as usize] = true);
     let triangles = (0_u32..).zip(&mesh.triangles);
     triangles.filter(|(_, corners)| corners.iter().any(|&v| is_moved[v as usize])).map(|(t, _)| t).collect()

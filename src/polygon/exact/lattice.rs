@@ -38,6 +38,11 @@ impl Lattice {
         p.to_array().map(|c| scale_by_power_of_two(c, -self.exponent).round() as i64)
     }
 
+    /// Whether a position is a lattice point.
+    pub(crate) fn holds(self, p: Vec3) -> bool {
+        p.to_array().iter().all(|&c| scale_by_power_of_two(c, -self.exponent).fract() == 0.0)
+    }
+
     /// From lattice units to model units.
     pub fn to_model(self, p: Vec3) -> Vec3 {
         Vec3::from_array(p.to_array().map(|c| scale_by_power_of_two(c, self.exponent)))

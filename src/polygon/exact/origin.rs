@@ -11,7 +11,7 @@ pub struct Origin {
     pub(crate) lattice: Lattice,
     /// Whether the exact surface is known not to cross itself.
     pub(crate) embedded: bool,
-    /// Vertices at lattice points other than the ones nearest to their positions, by vertex.
+    /// Vertices at lattice points that are not exactly their positions, by vertex.
     pub(crate) sites: Vec<(u32, Site)>,
     /// Vertices that are no lattice points, by vertex.
     pub(crate) fractions: Vec<(u32, Fraction)>,
@@ -82,6 +82,7 @@ impl Origin {
         triangles: &[[u32; 3]],
         moved: &mut Origin,
     ) -> Option<()> {
+        let lattice = moved.lattice;
         let old: Vec<Option<Site>> = self.old_sites(positions);
         let mut fractions = self.fractions.iter();
         for (vertex, (site, &position)) in (0_u32..).zip(old.iter().zip(positions)) {
@@ -90,7 +91,7 @@ impl Origin {
                 None => Place::Fraction(fractions.next().expect("each was marked").1),
             };
             match place.scaled(exponent)? {
-                Place::Site(site) if moved.lattice.snap(position) == site => {}
+                Place::Site(site) if lattice.holds(position) && lattice.snap(position) == site => {}
                 place => moved.add(vertex, place),
             }
         }

@@ -47,7 +47,11 @@ impl Snapped {
     pub(crate) fn hidden_place(&self, point: PointId) -> Option<Place> {
         match self.points.fraction(point) {
             Err(fraction) => Some(Place::Fraction(*fraction)),
-            Ok(site) => (self.lattice.snap(self.position(point)) != site).then_some(Place::Site(site)),
+            Ok(site) => {
+                let position = self.position(point);
+                let is_there = self.lattice.holds(position) && self.lattice.snap(position) == site;
+                (!is_there).then_some(Place::Site(site))
+            }
         }
     }
 
