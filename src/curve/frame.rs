@@ -66,8 +66,11 @@ impl UnitFrame {
         Ok(inward - self.rounding())
     }
 
-    /// A proved distance in frame units as one in model units, with its rounding.
-    pub(super) fn error_outward(&self, error: f64) -> f64 {
-        self.length_outward(error + self.rounding())
+    /// A proved distance in frame units, within what [`UnitFrame::tolerance`] left of a tolerance, as one in model units
+    /// with its rounding.
+    pub(super) fn error_outward(&self, error: f64, tolerance: f64) -> f64 {
+        let outward = self.length_outward(error + self.rounding());
+        debug_assert!(outward <= tolerance * (1.0 + 4.0 * f64::EPSILON), "{outward} of {tolerance}");
+        outward.min(tolerance)
     }
 }

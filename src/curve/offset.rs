@@ -55,7 +55,7 @@ pub fn offset(path: &Path, distance: f64, join: Join, tolerance: f64) -> Result<
         pen.beside(&Strand::new(subpath, &frame, SHARE * tolerance, distance)?);
         parallel.subpaths.extend(pen.lift(&frame, subpath.is_closed())?);
     }
-    Ok(Fitted { curve: parallel, error: frame.error_outward(pen.error()).min(tolerance) })
+    Ok(Fitted { curve: parallel, error: frame.error_outward(pen.error(), tolerance) })
 }
 
 /// The parallel of a cubic at a distance to its left, between two of its cusps.
@@ -123,6 +123,31 @@ impl Parallel {
             0.0 => self.tangents[0],
             1.0 => self.tangents[1],
             t => velocity_at(&self.velocity, t).try_normalize().unwrap_or(self.tangents[0]),
+        }
+    }
+
+    /// Unit tangents from one parameter to another, as many as it takes that between two neighbours the cubic turns
+    /// one way and by less than a right angle, as far as rounding can tell.
+    pub(super) fn directions(&self, from: f64, to: f64) -> Vec<Vec2> {
+        let inflections = Cubic::assume(self.points).inflections();
+        let inner = inflections.iter().copied().filter(|&t| from < t && t < to);
+        let (mut directions, mut at) = (vec![self.tangent(from)], from);
+        for stop in inner.chain([to]) {
+            self.turn_towards(at, stop, &mut directions);
+            at = stop;
+        }
+        directions
+    }
+
+    fn turn_towards(&self, from: f64, to: f64, directions: &mut Vec<Vec2>) {
+        let (_, _, [a, b, c]) = self.part(from, to);
+        let is_narrow = a.dot(b) > 0.0 && b.dot(c) > 0.0 && a.dot(c) > 0.0;
+        let middle = 0.5 * from + 0.5 * to;
+        if is_narrow || to - from <= NARROW {
+            directions.push(self.tangent(to));
+        } else {
+            self.turn_towards(from, middle, directions);
+            self.turn_towards(middle, to, directions);
         }
     }
 

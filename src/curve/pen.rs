@@ -1,7 +1,7 @@
 //! Outlines drawn beside a strand: parallels, joins and caps.
 
 use super::evolute::Evolute;
-use super::fit::{Run, SHARE, Side, Source, Step, follow};
+use super::fit::{Proxy, Run, SHARE, Side, Source, Step, follow};
 use super::frame::UnitFrame;
 use super::offset::Parallel;
 use super::simplify::piece;
@@ -160,8 +160,7 @@ impl Pen {
             if let Some(after) = neighbour(index, after) {
                 tangents[1] = middle(tangents[1], after.tangents[0]);
             }
-            self.error = self.error.max(element.error);
-            self.parallel(&Parallel::new(element.points, tangents, self.distance));
+            self.parallel(&Parallel::new(element.points, tangents, self.distance), element.error);
             let has_corner = smooth.get(index).is_some_and(|&smooth| !smooth);
             if has_corner {
                 let next = &strand.elements[after % count];
@@ -178,19 +177,19 @@ impl Pen {
         !b.after_cusp && angle < 0.1 && angle * self.distance.abs() <= 0.25 * SHARE * self.limit
     }
 
-    /// Draws the parallel of one element.
-    fn parallel(&mut self, whole: &Parallel) {
+    /// Draws the parallel of one element, which is within `base` of the one that is meant.
+    fn parallel(&mut self, whole: &Parallel, base: f64) {
         let mut from = 0.0;
         for to in whole.cusps().into_iter().chain([1.0]) {
             let stretch = whole.between(from, to);
-            for leg in self.legs(&stretch, &stretch, [from, to]) {
+            for leg in self.legs(&stretch, &stretch, [from, to], base) {
                 match leg {
                     Leg::Run(run, range) => {
                         let folded = self.covers && stretch.is_folded();
                         let evolute = folded.then(|| self.evolute(&stretch, range));
                         self.append(run, evolute);
                     }
-                    Leg::Turn(range) => self.turn(&stretch, range),
+                    Leg::Turn(range) => self.turn(&stretch, range, base),
                 }
             }
             from = to;
@@ -198,7 +197,7 @@ impl Pen {
     }
 
     /// A curve that goes with a stretch of a parallel, between two parameters.
-    fn legs(&self, source: &impl Source, stretch: &Parallel, range: [f64; 2]) -> Vec<Leg> {
+    fn legs(&self, source: &impl Source, stretch: &Parallel, range: [f64; 2], base: f64) -> Vec<Leg> {
         let point = POINT * self.limit;
         let is_least = |from: f64, to: f64| stretch.length_bound(from, to) <= point;
         let (mut legs, mut at) = (Vec::new(), range[0]);
@@ -209,7 +208,7 @@ impl Pen {
                         legs.push(Leg::Run(Run::starting(source.ray(at, Side::After).tangent), [at, at]));
                     }
                     if let Some(Leg::Run(run, range)) = legs.last_mut() {
-                        run.push(proxy, tangent);
+                        run.push(Proxy { error: proxy.error + base, ..proxy }, tangent);
                         range[1] = to;
                     }
                     at = to;
@@ -276,20 +275,25 @@ impl Pen {
         fitted.into_iter().map(|proxy| proxy.points).collect()
     }
 
-    /// A part so short, and that turns so fast, that it is a corner. Its parallel is an arc on either side.
-    fn turn(&mut self, stretch: &Parallel, [from, to]: [f64; 2]) {
-        let [a, b] = [from, to].map(|t| stretch.center(t));
-        let [arriving, leaving] = [from, to].map(|t| stretch.tangent(t));
-        let inner = arriving.perp_dot(leaving) * self.distance > 0.0;
-        if self.covers || !inner {
-            self.corner(a, arriving, leaving, Join::Round);
-        } else {
-            self.flush();
-            self.chain.line_to(a + arriving.perp() * self.distance);
-            self.arc(a, arriving, leaving, -1.0);
+    /// A part so short, and that turns so fast, that it is a corner. Its parallel is arcs on either side, as many as it
+    /// takes to turn the way the part does.
+    fn turn(&mut self, stretch: &Parallel, [from, to]: [f64; 2], base: f64) {
+        let at = stretch.center(from);
+        let directions = stretch.directions(from, to);
+        for pair in directions.windows(2) {
+            let [arriving, leaving] = [pair[0], pair[1]];
+            let inner = arriving.perp_dot(leaving) * self.distance > 0.0;
+            if self.covers || !inner {
+                self.corner(at, arriving, leaving, Join::Round);
+            } else {
+                self.flush();
+                self.chain.line_to(at + arriving.perp() * self.distance);
+                self.arc(at, arriving, leaving, -1.0);
+            }
         }
-        self.error = self.error.max((b - a).length());
-        self.chain.line_to(stretch.ray(to, Side::Before).point);
+        // The end of the last arc is moved once more.
+        self.error = self.error.max(0.5 * self.limit + base + 2.0 * stretch.length_bound(from, to));
+        self.chain.reach(stretch.ray(to, Side::Before).point, POINT * self.limit);
     }
 
     /// The evolute between two parameters; a straight line where it is one as far as the tolerance can tell.
@@ -299,7 +303,7 @@ impl Pen {
             return vec![chord];
         }
         let limit = (1.0 - SHARE) * self.limit;
-        let runs = self.legs(&evolute, stretch, range).into_iter().filter_map(|leg| match leg {
+        let runs = self.legs(&evolute, stretch, range, 0.0).into_iter().filter_map(|leg| match leg {
             Leg::Run(run, _) => Some(run),
             Leg::Turn(_) => None,
         });

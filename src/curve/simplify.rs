@@ -55,7 +55,7 @@ pub fn simplify(path: &Path, tolerance: f64, corner: f64) -> Result<Fitted<Path>
             Subpath::open(pieces)?
         });
     }
-    Ok(Fitted { curve: simple, error: frame.error_outward(error).min(tolerance) })
+    Ok(Fitted { curve: simple, error: frame.error_outward(error, tolerance) })
 }
 
 /// The elements between corners.

@@ -1,9 +1,10 @@
 //! Subpaths taken apart into cubics that do not stand still on the way.
 
+use super::fit::SHARE;
 use super::frame::UnitFrame;
 use super::subdivide::restrict;
 use super::{Arc, Cubic, Curve, CurveError, Piece, Subpath, tangents};
-use crate::math::{Vec2, atan2, pow};
+use crate::math::{Vec2, atan2, hypot, pow};
 
 /// A subpath in a frame, as cubics with a direction everywhere.
 pub(super) struct Strand {
@@ -42,11 +43,11 @@ impl Strand {
         let (start, closed) = (frame.inward(subpath.start()), subpath.is_closed());
         let mut strand = Strand { elements: Vec::new(), closed, start, heading: Vec2::X };
         for piece in subpath.pieces() {
-            let (finer, error) = match piece {
-                Piece::Arc(arc) => (arc_tolerance(arc, tolerance, distance), frame.length_inward(tolerance)),
-                _ => (tolerance, 0.0),
+            let (cubics, error) = match piece {
+                Piece::Arc(arc) => (arc_cubics(arc, tolerance, distance)?, frame.length_inward(tolerance)),
+                _ => (piece.cubics(tolerance)?, 0.0),
             };
-            for cubic in piece.cubics(finer)? {
+            for cubic in cubics {
                 strand.add(&cubic, frame, error);
             }
         }
@@ -95,17 +96,29 @@ impl Strand {
     }
 }
 
-/// The tolerance for the cubics of an arc whose parallels are to be within another.
+/// Cubics for an arc whose parallels are to be within a tolerance: half of it for the points, a quarter for the
+/// directions, and another for the rounding of those.
 ///
 /// On the unit circle a cubic over the angle w is off by at most e = 2/27 s^6 / c^2, s and c the sine and cosine of
 /// w/4; the square of its radius is 1 + 216 e t^2 (1-t)^2 (1-2t)^2, so that its direction is off by at most
-/// 8.4 e / w < 1.4 e^(5/6). The arc is the image under a map that stretches by a and b; directions are off by at most
-/// a/b times as much.
-fn arc_tolerance(arc: &Arc, tolerance: f64, distance: f64) -> f64 {
+/// 8.4 e / w < 1.4 e^(5/6). The arc is the image under a map that stretches by a and b; points are off by at most
+/// a times, directions by at most a/b times as much. An arc without width has its directions from rounding alone, and
+/// so have its cubics: they are straight.
+fn arc_cubics(arc: &Arc, tolerance: f64, distance: f64) -> Result<Vec<Cubic<Vec2>>, CurveError> {
     let ([long, short], _) = arc.half_axes();
-    let (a, b) = (long.length(), short.length());
-    let direction = 0.5 * tolerance / distance.abs() * (b / a) / 1.4;
-    tolerance.min(2.0 * a * pow(direction, 1.2))
+    let [a, b] = [long, short].map(|axis| hypot(axis.x, axis.y));
+    if b == 0.0 || distance == 0.0 {
+        return arc.cubics(0.5 * tolerance);
+    }
+    let lever = distance.abs() * (a / b);
+    let direction = pow(0.25 * tolerance / lever / 1.4, 1.2);
+    let count = arc.count((0.5 * tolerance / a).min(direction));
+    let arm = a * arc.sweep().abs() / (3.0 * count as f64);
+    let rounding = (arc.finest() + 4.0 * lever * (arc.finest() / arm)).max(2.0 * arc.finest());
+    if rounding > tolerance {
+        return Err(CurveError::ToleranceTooFine { value: tolerance / SHARE, finest: rounding / SHARE });
+    }
+    arc.in_parts(count)
 }
 
 impl Element {

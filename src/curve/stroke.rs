@@ -80,7 +80,7 @@ pub fn stroke(path: &Path, style: &Stroke, tolerance: f64) -> Result<Fitted<Path
             draw(&strand, style.cap, &mut pen, &frame, &mut outline)?;
         }
     }
-    Ok(Fitted { curve: outline, error: frame.error_outward(pen.error()).min(tolerance) })
+    Ok(Fitted { curve: outline, error: frame.error_outward(pen.error(), tolerance) })
 }
 
 /// Adds the outline of one strand.

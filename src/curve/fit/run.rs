@@ -176,13 +176,9 @@ impl Run {
         let target =
             Target { start: direction(leaving), end: direction(arriving), area: sums[0], moment: sums[1] };
         let mut best: Option<Proxy> = None;
-        let mut pairs = arms(&target);
-        if pairs.is_empty() {
-            // Straight as far as can be told, or beyond hope.
-            let third = self.polygon_length(from, to) / (3.0 * length);
-            pairs.push([third, third]);
-        }
-        for [p, q] in pairs {
+        // Straight as far as rounding can tell the arms mean nothing, and thirds of the length are as good as any.
+        let third = self.polygon_length(from, to) / (3.0 * length);
+        for [p, q] in arms(&target).into_iter().chain([[third; 2]]) {
             let points = [start, start + leaving * (p * length), end - arriving * (q * length), end];
             let allowed = best.as_ref().map_or(limit, |best| best.error);
             if let Some(error) = deviation(&points, self, from, to, allowed) {

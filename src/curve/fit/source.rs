@@ -106,7 +106,7 @@ pub fn fit<S: Source>(source: &S, tolerance: f64) -> Result<Fitted<Spline<Vec2>>
             *last = Cubic::new([a, b, c, ends[1]])?;
         }
     }
-    Ok(Fitted { curve: Spline::from_pieces(&cubics)?, error: frame.error_outward(error).min(tolerance) })
+    Ok(Fitted { curve: Spline::from_pieces(&cubics)?, error: frame.error_outward(error, tolerance) })
 }
 
 /// Ends of the domain and breaks, ascending.
