@@ -60,7 +60,7 @@ pub use closed::{Moments, Winding, moments, winding};
 pub use convert::monomials;
 pub use cubic::CubicShape;
 pub use differential::{Curve, Frame, Jet, Tangents, rotation_minimizing_frames, tangents};
-pub use fit::{Fitted, Ray, Side, Source, fit};
+pub use fit::{Corners, Fitted, PointFit, Ray, Side, Source, find_corners, fit, fit_points, schneider};
 pub use interpolate::{Boundary, Spacing};
 pub use intersect::{Contact, Meeting, intersect, intersect_line, self_intersections};
 pub use length::{ArcLength, length, speed_minima};

@@ -9,15 +9,15 @@ const LONGEST: f64 = 4.0;
 
 /// What is matched, in the frame in which the chord runs from (0, 0) to (1, 0).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Target {
+struct Target {
     /// Unit tangent at the start.
-    pub(super) start: Vec2,
+    start: Vec2,
     /// Unit tangent at the end.
-    pub(super) end: Vec2,
+    end: Vec2,
     /// Integral of y dx.
-    pub(super) area: f64,
+    area: f64,
     /// Integral of x y dx.
-    pub(super) moment: f64,
+    moment: f64,
 }
 
 /// Integrals of y dx and x y dx along a cubic.
@@ -34,12 +34,32 @@ pub(super) fn integrals(points: &[Vec2; 4]) -> [f64; 2] {
     [area, moment]
 }
 
+/// The cubics with these ends and unit tangents there that have integrals of y dx and x y dx, both in the frame in which
+/// the chord runs from (0, 0) to (1, 0); and that with arms of a third of `polygon`, about the length: where things are
+/// straight as far as rounding can tell the integrals mean nothing.
+pub(super) fn candidates(
+    [start, end]: [Vec2; 2],
+    [leaving, arriving]: [Vec2; 2],
+    [area, moment]: [f64; 2],
+    polygon: f64,
+) -> impl Iterator<Item = [Vec2; 4]> {
+    let chord = end - start;
+    let length = chord.length();
+    let local = |v: Vec2| Vec2::new(v.dot(chord), chord.perp_dot(v)) / length;
+    let target = Target { start: local(leaving), end: local(arriving), area, moment };
+    let third = polygon / (3.0 * length);
+    arms(&target)
+        .into_iter()
+        .chain([[third; 2]])
+        .map(move |[p, q]| [start, start + leaving * (p * length), end - arriving * (q * length), end])
+}
+
 /// Lengths of both arms, in chords, of the cubics that match the target: at most four pairs (Levien, Fitting cubic
 /// Bézier curves, 2021).
 ///
 /// With arms p and q the area is 3/20 (2 p s0 + 2 q s1 - p q S), S the sine of the sum of both angles; that gives q as
 /// a quotient of linear functions of p, and the moment, of second degree in q, becomes a quartic of p.
-pub(super) fn arms(target: &Target) -> Vec<[f64; 2]> {
+fn arms(target: &Target) -> Vec<[f64; 2]> {
     let (c0, s0, c1, s1) = (target.start.x, target.start.y, target.end.x, -target.end.y);
     let sum = s0 * c1 + c0 * s1;
     let (over, under) = ([20.0 / 3.0 * target.area, -2.0 * s0], [2.0 * s1, -sum]);

@@ -2,9 +2,11 @@
 
 mod arms;
 mod deviation;
+mod points;
 mod run;
 mod source;
 
+pub use points::{Corners, PointFit, find_corners, fit_points, schneider};
 pub use source::{Ray, Side, Source, fit};
 
 pub(super) use run::{Proxy, Run};

@@ -1,6 +1,6 @@
 //! A curve without corners, made of cubics, and the fewest cubics that follow it.
 
-use super::arms::{Target, arms, integrals};
+use super::arms::{candidates, integrals};
 use super::deviation::{deviation, point_and_velocity, polygon_length};
 use crate::curve::frame::UnitFrame;
 use crate::curve::subdivide::restrict;
@@ -172,14 +172,9 @@ impl Run {
             let [area, moment] = integrals(&part.points.map(|p| local(p - start)));
             sums = [sums[0] + area, sums[1] + moment];
         }
-        let direction = |v: Vec2| local(v) * length;
-        let target =
-            Target { start: direction(leaving), end: direction(arriving), area: sums[0], moment: sums[1] };
         let mut best: Option<Proxy> = None;
-        // Straight as far as rounding can tell the arms mean nothing, and thirds of the length are as good as any.
-        let third = self.polygon_length(from, to) / (3.0 * length);
-        for [p, q] in arms(&target).into_iter().chain([[third; 2]]) {
-            let points = [start, start + leaving * (p * length), end - arriving * (q * length), end];
+        let polygon = self.polygon_length(from, to);
+        for points in candidates([start, end], [leaving, arriving], sums, polygon) {
             let allowed = best.as_ref().map_or(limit, |best| best.error);
             if let Some(error) = deviation(&points, self, from, to, allowed) {
                 best = Some(Proxy { points, error });
