@@ -6,6 +6,7 @@ use crate::curve::{
     self_intersections,
 };
 use crate::math::Vec2;
+use crate::par;
 
 /// What to show of curves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -291,34 +292,42 @@ impl Subject<'_> {
             }));
         }
         parts.sort_by(|a, b| a.2.min.x.total_cmp(&b.2.min.x));
-        let (mut points, mut unresolved) = (Vec::new(), 0);
-        for (k, (part, curve, bounds)) in parts.iter().enumerate() {
-            if !part.straight {
-                let own = self_intersections(curve).unwrap_or_default();
-                points.extend(own.iter().map(|meeting| meeting.point));
-            }
-            for (other, second, around) in &parts[k + 1..] {
-                if around.min.x > bounds.max.x {
-                    break;
-                }
-                if around.min.y > bounds.max.y || around.max.y < bounds.min.y {
-                    continue;
-                }
-                match intersect(curve, second, None) {
-                    Ok(meetings) => points.extend(meetings.iter().flat_map(|meeting| {
-                        let overlap = meeting.contact == Contact::Overlap;
-                        let ends =
-                            [(meeting.first[0], meeting.second[0]), (meeting.first[1], meeting.second[1])];
-                        let ends = if overlap { &ends[..] } else { &ends[..1] };
-                        let kept = ends.iter().filter(|(s, t)| overlap || !part.joins(other, *s, *t));
-                        kept.map(|(s, _)| curve.eval(*s)).collect::<Vec<_>>()
-                    })),
-                    Err(_) => unresolved += 1,
-                }
-            }
-        }
+        let places: Vec<usize> = (0..parts.len()).collect();
+        let found = par::map_above(PARALLEL_FROM, &places, |&k| meetings(&parts[k], &parts[k + 1..]));
+        let unresolved = found.iter().map(|(_, unresolved)| unresolved).sum();
+        let points = found.into_iter().flat_map(|(points, _)| points).collect();
         (Layer::new(Content::Marks(Mark::Cross, points), Ink::Accent).named("intersections"), unresolved)
     }
+}
+
+/// From so many pieces on their meetings are found on all threads: each is some microseconds of work.
+const PARALLEL_FROM: usize = 64;
+
+type Placed = (Part, Cubic<Vec2>, Bounds<Vec2>);
+
+/// Where a piece meets itself and those after it, which are in order of their smallest x; and how many of those could
+/// not be decided.
+fn meetings((part, curve, bounds): &Placed, others: &[Placed]) -> (Vec<Vec2>, usize) {
+    let own = if part.straight { Vec::new() } else { self_intersections(curve).unwrap_or_default() };
+    let (mut points, mut unresolved) = (own.iter().map(|meeting| meeting.point).collect::<Vec<_>>(), 0);
+    let near = others.iter().take_while(|(_, _, around)| around.min.x <= bounds.max.x);
+    for (other, second, around) in near {
+        let beside = around.min.y > bounds.max.y || around.max.y < bounds.min.y;
+        if beside || part.meets_plainly((curve, bounds), other, (second, around)) {
+            continue;
+        }
+        match intersect(curve, second, None) {
+            Ok(meetings) => points.extend(meetings.iter().flat_map(|meeting| {
+                let overlap = meeting.contact == Contact::Overlap;
+                let ends = [(meeting.first[0], meeting.second[0]), (meeting.first[1], meeting.second[1])];
+                let ends = if overlap { &ends[..] } else { &ends[..1] };
+                let kept = ends.iter().filter(|(s, t)| overlap || !part.joins(other, *s, *t));
+                kept.map(|(s, _)| curve.eval(*s)).collect::<Vec<_>>()
+            })),
+            Err(_) => unresolved += 1,
+        }
+    }
+    (points, unresolved)
 }
 
 /// A piece and where it stands in its subpath.
@@ -332,15 +341,35 @@ struct Part {
 }
 
 impl Part {
+    /// Whether the other piece is the next one.
+    fn precedes(&self, other: &Part) -> bool {
+        let next = self.index + 1 == other.index;
+        let around = self.closed && other.index == 0 && self.index + 1 == self.count;
+        self.path == other.path && (next || around)
+    }
+
     /// Whether these parameters are the joint of this piece with a neighbour.
     fn joins(&self, other: &Part, s: f64, t: f64) -> bool {
-        let follows = |before: &Part, after: &Part, end: f64, start: f64| {
-            let next = before.index + 1 == after.index
-                || (before.closed && after.index == 0 && before.index + 1 == before.count);
-            // Parameters at a tangent joint are good to half of the digits.
-            next && end > 1.0 - 1e-6 && start < 1e-6
+        // Parameters at a tangent joint are good to half of the digits.
+        let follows = |end: f64, start: f64| end > 1.0 - 1e-6 && start < 1e-6;
+        (self.precedes(other) && follows(s, t)) || (other.precedes(self) && follows(t, s))
+    }
+
+    /// Whether two pieces are neighbours that meet nowhere but at their joint, as their boxes show: they have but that
+    /// point in common. So it is for most joints of smooth paths and of polygons.
+    fn meets_plainly(
+        &self,
+        (curve, bounds): (&Cubic<Vec2>, &Bounds<Vec2>),
+        other: &Part,
+        (second, around): (&Cubic<Vec2>, &Bounds<Vec2>),
+    ) -> bool {
+        let joint = match (self.precedes(other), other.precedes(self)) {
+            (true, false) => curve.end(),
+            (false, true) => second.end(),
+            _ => return false,
         };
-        self.path == other.path && (follows(self, other, s, t) || follows(other, self, t, s))
+        let (low, high) = (bounds.min.max(around.min), bounds.max.min(around.max));
+        low == joint && high == joint
     }
 }
 
