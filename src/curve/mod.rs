@@ -9,6 +9,10 @@
 //! and intersections are classified. There is no hidden epsilon: a tolerance is an argument, and where none is given
 //! the bound is that of the rounding of `f64` at the size of the curve's hull.
 //!
+//! What curves stand for others say how far they are from them ([`Fitted`]): [`fit`] follows any curve that bounds its own
+//! distance from a cubic, [`fit_points`] passes points, [`simplify`] keeps a path's corners and little else,
+//! [`offset`](fn@offset) draws parallels with all of their cusps, and [`stroke`](fn@stroke) outlines that have no holes.
+//!
 //! ```
 //! use ogee::curve::{Bernstein, Cubic};
 //! use ogee::math::Vec2;

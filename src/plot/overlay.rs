@@ -385,3 +385,56 @@ fn smoothness(before: &Piece, after: &Piece) -> usize {
         true => 1,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crosses(subpaths: Vec<Subpath>) -> Vec<Vec2> {
+        let show = Show { intersections: true, ..Show::default() };
+        let found = overlay(&[&Path { subpaths }], &show);
+        assert_eq!(found.unresolved, 0);
+        found.layers.into_iter().fold(Vec::new(), |points, layer| match layer.content {
+            Content::Marks(_, marks) => [points, marks].concat(),
+            _ => points,
+        })
+    }
+
+    fn polyline(points: &[(f64, f64)], closed: bool) -> Subpath {
+        Subpath::polyline(&points.iter().copied().map(Vec2::from).collect::<Vec<_>>(), closed)
+            .expect("a polyline")
+    }
+
+    #[test]
+    fn joints_of_neighbours_are_no_intersections() {
+        let circle = crate::curve::Arc::ellipse(Vec2::ZERO, Vec2::ONE).expect("a circle");
+        let loops = vec![
+            Subpath::closed(vec![circle.into()]).expect("a loop"),
+            polyline(&[(5.0, 0.0), (7.0, 0.0), (7.0, 2.0), (4.0, 3.0)], true),
+            // Pieces that lean back over their joint, and a loop of two pieces.
+            polyline(&[(10.0, 0.0), (12.0, 0.0), (11.0, 1.0), (13.0, 1.5)], false),
+            polyline(&[(20.0, 0.0), (22.0, 1.0), (21.0, 3.0)], true),
+        ];
+        assert!(crosses(loops).is_empty());
+        // Neighbours that overlap or cross apart from their joint are told.
+        assert!(!crosses(vec![polyline(&[(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)], false)]).is_empty());
+        assert_eq!(crosses(vec![polyline(&[(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)], true)]).len(), 1);
+    }
+
+    #[test]
+    fn all_crossings_are_found_in_order_on_any_number_of_threads() {
+        let line = |k: usize, across: bool| {
+            let (at, end) = (k as f64 + 0.5, 10.0);
+            let ends = if across { [(0.0, at), (end, at)] } else { [(at, 0.0), (at, end)] };
+            polyline(&ends, false)
+        };
+        let few: Vec<Subpath> = (0..10).flat_map(|k| [line(k, true), line(k, false)]).collect();
+        // More pieces, far away, that meet nothing: so many that threads share the work.
+        let strangers =
+            (0..PARALLEL_FROM).map(|k| polyline(&[(100.0 + k as f64, 0.0), (100.5 + k as f64, 0.0)], false));
+        let many: Vec<Subpath> = few.iter().cloned().chain(strangers).collect();
+        let alone = crosses(few);
+        assert_eq!(alone.len(), 100);
+        assert_eq!(crosses(many), alone);
+    }
+}

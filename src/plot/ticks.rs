@@ -54,21 +54,15 @@ fn label(value: f64, exponent: i32, largest: f64) -> String {
 /// A number to a power of ten, less another power that is taken out of it: from its exact decimals, so that neighbours
 /// differ where the numbers do.
 fn mantissa(value: f64, exponent: i32, size: i32) -> String {
-    let fixed = format!("{:.*}", (-exponent).max(0) as usize, value.abs());
-    let whole = fixed.split('.').next().map_or(0, str::len) as i32;
-    let places = (size - exponent).max(0) as usize;
-    // Zeros in front, so that there are digits on both sides of the point wherever it goes.
-    let front = (size + 1 - whole).max(0) as usize;
-    let digits: String = "0".repeat(front).chars().chain(fixed.chars().filter(|c| *c != '.')).collect();
-    let (before, after) = digits.split_at((whole + front as i32 - size) as usize);
-    let before = before.trim_start_matches('0');
+    let rounded = |places: i32| format!("{:.*e}", places.max(0) as usize, value.abs());
+    let power = |text: &str| text.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0);
+    let text = rounded(power(&rounded(17)) - exponent);
+    let front = "0".repeat((size - power(&text)).max(0) as usize);
+    let digits = front + &text.split('e').next().unwrap_or_default().replace('.', "");
+    let (before, after) = digits.split_at(1);
     let sign = if value < 0.0 { "-" } else { "" };
-    let point = if places > 0 { "." } else { "" };
-    format!(
-        "{sign}{}{point}{}",
-        if before.is_empty() { "0" } else { before },
-        &after[..places.min(after.len())]
-    )
+    let point = if size > exponent { "." } else { "" };
+    format!("{sign}{before}{point}{}", &after[..after.len().min((size - exponent).max(0) as usize)])
 }
 
 fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
