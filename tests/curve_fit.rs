@@ -60,7 +60,7 @@ fn a_wave_is_followed_from_both_sides() {
         }
         assert_eq!(curve.eval(0.0), Vec2::ZERO);
     }
-    println!("{counts:?}");
+    assert!(counts.is_sorted(), "{counts:?}");
 }
 
 fn cubic(points: [(f64, f64); 4]) -> Cubic<Vec2> {
@@ -179,7 +179,6 @@ fn a_round_stroke_is_what_is_near() {
                 );
                 assert!(times.is_none_or(|times| times >= 0), "{name}: {times:?}");
             }
-            println!("{name} {width}: {count} pieces");
         }
     }
 }
@@ -238,7 +237,7 @@ fn offsets_far_away_tiny_and_huge() {
     let tiny = plain.map(&Affine2::from_scale(Vec2::splat(1e-12))).unwrap();
     assert_eq!(counts(&tiny, 1e-12), expected);
     let huge = plain.map(&Affine2::from_scale(Vec2::splat(1e306))).unwrap();
-    assert_eq!(counts(&huge, 1e304).0 > 0, true);
+    assert!(counts(&huge, 1e304).0 > 0);
     // Half of the width beyond the range of numbers.
     let error = stroke(&huge, &Stroke::round(1.7e308), 1e300).unwrap_err();
     assert_eq!(error, CurveError::NotFinite { index: 0 });

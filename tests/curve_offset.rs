@@ -1,4 +1,5 @@
 //! Offsets of random and hard curves against the parallel itself, measured densely from both sides.
+#![allow(clippy::print_stdout, reason = "figures for who asks with --nocapture")]
 
 mod measure;
 

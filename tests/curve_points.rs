@@ -1,4 +1,5 @@
 //! Paths past points: near to every one of them, of few pieces, smooth but at corners, in bounded time.
+#![allow(clippy::print_stdout, reason = "figures for who asks with --nocapture")]
 
 use ogee::curve::{
     Corners, CurveError, Fitted, Piece, PointFit, Subpath, find_corners, fit_points, schneider,

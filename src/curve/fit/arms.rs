@@ -122,7 +122,7 @@ mod tests {
 
     /// The cubic with these arms, over the unit chord.
     fn cubic(angles: [f64; 2], [p, q]: [f64; 2]) -> ([Vec2; 4], Vec2, Vec2) {
-        let [start, end] = angles.map(|a| crate::math::sin_cos(a)).map(|(s, c)| Vec2::new(c, s));
+        let [start, end] = angles.map(crate::math::sin_cos).map(|(s, c)| Vec2::new(c, s));
         ([Vec2::ZERO, start * p, Vec2::X - end * q, Vec2::X], start, end)
     }
 
