@@ -76,7 +76,7 @@ fn random_parallels_are_within_what_they_report() {
         for _ in 0..3 {
             let distance = random.size(1e-3, 20.0) * if random.unit() < 0.5 { -1.0 } else { 1.0 };
             let mut tolerance = random.size(1e-9, 0.1);
-            let drawn = |tolerance: f64| offset(&one(piece.clone()), distance, Join::Round, tolerance);
+            let drawn = |tolerance: f64| offset(&one(piece), distance, Join::Round, tolerance);
             let mut parallel = drawn(tolerance);
             if let (Piece::Arc(_), Err(CurveError::ToleranceTooFine { finest, .. })) = (&piece, &parallel) {
                 // Rounding turns a flat ellipse. What is said to be possible is.
@@ -156,7 +156,7 @@ fn hostile_paths_get_answers_or_typed_errors() {
                     match offset(path, distance, Join::Miter { limit: 4.0 }, tolerance) {
                         Ok(parallel) => assert!(parallel.error <= tolerance, "{name}"),
                         Err(CurveError::ToleranceTooFine { finest, .. }) => {
-                            assert!(finest > tolerance, "{name}")
+                            assert!(finest > tolerance, "{name}");
                         }
                         Err(error) => panic!("{name} at {distance}, {tolerance}: {error}"),
                     }
@@ -192,7 +192,7 @@ fn a_loop_too_small_to_see_turns_the_parallel_its_own_way() {
         let points = [(0.0, 0.0), (100.0, 100.0), (bit, 100.0), (100.0, 0.0)].map(Vec2::from);
         let piece = Piece::Cubic(Cubic::new(points).unwrap());
         for distance in [7.0, -7.0] {
-            let parallel = offset(&one(piece.clone()), distance, Join::Round, 1e-2).unwrap();
+            let parallel = offset(&one(piece), distance, Join::Round, 1e-2).unwrap();
             let drawn: Vec<Piece> = parallel.curve.pieces().cloned().collect();
             let off = two_sided(&piece, distance, &drawn, 400);
             assert!(
@@ -237,7 +237,7 @@ fn phases_wrap() {
     let dashed = |phase: f64| {
         let style = Stroke { dashes: vec![1.0, 0.5], phase, cap: Cap::Butt, ..Stroke::round(0.25) };
         let outline = stroke(&line, &style, 1e-6).unwrap().curve;
-        outline.subpaths.iter().map(|dash| dash.bounding_box()).collect::<Vec<_>>()
+        outline.subpaths.iter().map(Subpath::bounding_box).collect::<Vec<_>>()
     };
     for phase in [0.0, 0.25, 1.25] {
         let plain = dashed(phase);
