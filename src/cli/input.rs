@@ -100,7 +100,7 @@ impl fmt::Display for Source {
 /// Says which declarations of style sheets are not obeyed.
 pub(super) fn warn_of_styles(source: &Source, drawing: &Drawing, terminal: &Terminal) {
     for (name, count) in &drawing.disobeyed {
-        terminal.warn(format!("{source}: {count} declarations of `{name}` in styles are not obeyed"));
+        terminal.warn(format!("{source}: `{name}` in styles is not obeyed (declared {count}×)"));
     }
 }
 
