@@ -1,0 +1,105 @@
+//! Two curves brought near the origin and size 1, and the numbers that bound what rounding does to them.
+
+use super::part::{Part, Store, U};
+use crate::curve::subdivide::reciprocal_powers;
+use crate::math::Vec2;
+use crate::numeric::double_double::DoubleDouble;
+
+/// Two curves about the origin whose control points are at most 1 in size.
+pub(super) struct Scene<S> {
+    pub(super) a: S,
+    pub(super) b: S,
+    /// The control points as they are.
+    raw: [S; 2],
+    /// A shift before and two factors after the origin is taken off, which make these of the raw points.
+    scale: [f64; 3],
+    /// How far the difference of two points may be off, in either norm.
+    pub(super) rounding: f64,
+    /// Bound of the second derivatives together.
+    pub(super) bend: f64,
+}
+
+impl<S: Store> Scene<S> {
+    #[inline]
+    pub(super) fn new(a: S, b: S) -> Scene<S> {
+        let raw = [a, b];
+        let largest = raw
+            .iter()
+            .flat_map(|points| points.as_ref())
+            .fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
+        // A difference of huge numbers overflows, a quarter of subnormal ones loses digits.
+        let quarter = if largest > 1e300 { 0.25 } else { 1.0 };
+        let origin = raw[0].as_ref()[0] * quarter;
+        let [mut a, mut b] = raw.clone();
+        let mut size: f64 = 0.0;
+        for p in a.as_mut().iter_mut().chain(b.as_mut()) {
+            *p = *p * quarter - origin;
+            size = size.max(p.abs().max_element());
+        }
+        let [first, second] = if size > 0.0 { reciprocal_powers(size) } else { [1.0, 1.0] };
+        let scale = [quarter, first, 0.5 * second];
+        for p in a.as_mut().iter_mut().chain(b.as_mut()) {
+            *p = *p * scale[1] * scale[2];
+        }
+        // De Casteljau has at most as many blends in a row as the degree, each off by 3 u; two curves, two axes.
+        let degree = a.as_ref().len().max(b.as_ref().len()) - 1;
+        let rounding = 4.0 * U * (4.0 + 3.0 * degree as f64);
+        let bend = bend(a.as_ref()) + bend(b.as_ref());
+        Scene { a, b, raw, scale, rounding, bend }
+    }
+
+    pub(super) fn parts(&self) -> [Part<S>; 2] {
+        [Part::whole(self.a.clone()), Part::whole(self.b.clone())]
+    }
+
+    /// A length of the scene in model units.
+    pub(super) fn outward(&self, length: f64) -> f64 {
+        length / self.scale[1] / self.scale[2] / self.scale[0]
+    }
+
+    /// A length in model units in those of the scene.
+    pub(super) fn inward(&self, length: f64) -> f64 {
+        length * self.scale[0] * self.scale[1] * self.scale[2]
+    }
+
+    /// Whether the ends at parameters 0 or 1 are the same point, exactly.
+    pub(super) fn ends_are_equal(&self, s: f64, t: f64) -> bool {
+        let end = |points: &[Vec2], t: f64| points[if t == 0.0 { 0 } else { points.len() - 1 }];
+        end(self.raw[0].as_ref(), s) == end(self.raw[1].as_ref(), t)
+    }
+
+    /// The second curve's point less the first one's, in double-double, and the bound of its error.
+    pub(super) fn residual(&self, s: f64, t: f64) -> (Vec2, f64) {
+        let [quarter, first, second] = self.scale;
+        let axis = |axis: usize| {
+            let of = |points: &[Vec2], t: f64| {
+                let exact = |p: &Vec2| {
+                    DoubleDouble::difference(p[axis] * quarter, self.raw[0].as_ref()[0][axis] * quarter)
+                };
+                let mut row: Vec<DoubleDouble> = points
+                    .iter()
+                    .map(exact)
+                    .map(|x| DoubleDouble { hi: x.hi * first * second, lo: x.lo * first * second })
+                    .collect();
+                let rest = DoubleDouble::difference(1.0, t);
+                for count in (1..row.len()).rev() {
+                    for i in 0..count {
+                        row[i] = row[i] * rest + row[i + 1] * t;
+                    }
+                }
+                row[0]
+            };
+            (of(self.raw[1].as_ref(), t) - of(self.raw[0].as_ref(), s)).to_f64()
+        };
+        let degree = self.a.as_ref().len().max(self.b.as_ref().len()) as f64;
+        let rest = Vec2::new(axis(0), axis(1));
+        (rest, 16.0 * degree * DoubleDouble::EPSILON + 2.0 * U * (rest.x.abs() + rest.y.abs()))
+    }
+}
+
+/// Bound of the second derivative in the sum norm.
+fn bend(points: &[Vec2]) -> f64 {
+    let n = (points.len() - 1) as f64;
+    let bends = points.windows(3).map(|p| p[2] - p[1] * 2.0 + p[0]).map(|d| d.x.abs() + d.y.abs());
+    n * (n - 1.0) * (bends.fold(0.0, f64::max) + 8.0 * U)
+}
