@@ -159,8 +159,11 @@ fn judge(pair: &[Points; 2]) -> (Option<String>, f64) {
             let mut worst: f64 = 0.0;
             for m in &found {
                 let off = |(s, t, _): &(f64, f64, usize)| (s - m.first[0]).abs().max((t - m.second[0]).abs());
+                // Of meetings that round to the same numbers the one of the same kind is meant.
+                let other_kind = |place: &usize| !kind_is_right(&a, &b, m, expected[*place].2);
+                let order = |i: &usize, j: &usize| off(&expected[*i]).total_cmp(&off(&expected[*j]));
                 let nearest =
-                    (0..expected.len()).min_by(|&i, &j| off(&expected[i]).total_cmp(&off(&expected[j])));
+                    (0..expected.len()).min_by(|i, j| order(i, j).then(other_kind(i).cmp(&other_kind(j))));
                 let Some(place) = nearest.filter(|&i| off(&expected[i]) < 1e-10) else {
                     return (Some(format!("{m:?} is none of {expected:?}")), worst);
                 };

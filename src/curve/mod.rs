@@ -35,7 +35,13 @@ pub mod evaluate;
 mod interpolate;
 mod intersect;
 mod length;
+mod length_cubic;
 mod nearest;
+<<<<<<< HEAD
+=======
+mod nearest_cubic;
+mod offset;
+>>>>>>> parent of 5fddd43 (Revert "Nearest point and length of cubics by their own methods on the stack; batches of cubics about the middle")
 mod path;
 mod rational;
 mod reduce;
@@ -169,12 +175,6 @@ fn check_finite<P: Blend>(points: &[P]) -> Result<(), CurveError> {
         Some(index) => Err(CurveError::NotFinite { index }),
         None => Ok(()),
     }
-}
-
-/// Checks that products of two such curves have binomials that do not overflow.
-fn check_degree(actual: usize) -> Result<(), CurveError> {
-    const MOST: usize = 500;
-    if actual <= MOST { Ok(()) } else { Err(CurveError::Degree { actual, most: MOST }) }
 }
 
 /// Checks that a tolerance or accuracy is a positive finite number.

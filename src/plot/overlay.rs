@@ -126,8 +126,9 @@ fn dashed(layer: Layer) -> Layer {
 
 /// Needles on a curve, evenly by parameter.
 const NEEDLES: usize = 5;
-/// Teeth of a comb.
+/// Teeth of a comb, and of all combs together: more are one blot, and each is a line to draw.
 const TEETH: usize = 40;
+const MOST_TEETH: usize = 20_000;
 /// Length of needles, and of the longest tooth, as a share of the figure.
 const NEEDLE: f64 = 0.07;
 const TOOTH: f64 = 0.1;
@@ -212,15 +213,19 @@ impl Subject<'_> {
         Layer::new(Content::Segments(segments), ink).weighing(0.7).named(name)
     }
 
-    /// Teeth on the outer side, the longest of all curves as long as is beautiful, and a line along their tips.
+    /// Teeth on the outer side, the longest of all curves as long as is beautiful, and a line along their tips. Of very
+    /// many pieces they have few teeth each, and then only some have any.
     fn combs(&self) -> [Layer; 2] {
         let bent: Vec<&Piece> = self.pieces().filter(|piece| !matches!(piece, Piece::Line(_))).collect();
+        let count = (MOST_TEETH / bent.len().max(1)).clamp(2, TEETH);
+        let stride = (bent.len() * count).div_ceil(MOST_TEETH).max(1);
         let at = |piece: &Piece, k: usize| {
-            let jet = piece.jet(k as f64 / TEETH as f64);
+            let jet = piece.jet(k as f64 / count as f64);
             let curvature = jet.curvature();
             curvature.is_finite().then(|| (jet.point, jet.first.normalize_or_zero().perp(), curvature))
         };
-        let teeth = || bent.iter().map(|piece| (0..=TEETH).filter_map(|k| at(piece, k)).collect::<Vec<_>>());
+        let comb = |piece: &&Piece| (0..=count).filter_map(|k| at(piece, k)).collect::<Vec<_>>();
+        let teeth = || bent.iter().step_by(stride).map(comb);
         let curvatures = teeth().flatten().map(|(_, _, curvature)| curvature.abs());
         // Near a cusp curvature has no bound: the comb shows what all but the sharpest twentieth have.
         let mut sorted: Vec<f64> = curvatures.collect();
