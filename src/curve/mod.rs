@@ -37,11 +37,7 @@ mod intersect;
 mod length;
 mod length_cubic;
 mod nearest;
-<<<<<<< HEAD
-=======
 mod nearest_cubic;
-mod offset;
->>>>>>> parent of 5fddd43 (Revert "Nearest point and length of cubics by their own methods on the stack; batches of cubics about the middle")
 mod path;
 mod rational;
 mod reduce;
