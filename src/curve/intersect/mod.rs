@@ -15,6 +15,7 @@ mod own;
 mod part;
 mod scene;
 mod search;
+mod together;
 mod touch;
 
 pub use line::intersect_line;
@@ -162,10 +163,12 @@ fn met<S: Store>(
     search.run(&whole_a, &whole_b);
     let mut found = if search.open.is_empty() {
         search.crossings.into_iter().map(Meeting::from).collect()
+    } else if let Some(found) = together::on_line(scene, a, b) {
+        found
     } else if decidable {
-        decided(a, b)
+        decided(scene, a, b)
     } else {
-        touch::classified(scene, search)?
+        touch::classified(scene, search, together::overlaps(scene))?
     };
     if let Some(tolerance) = tolerance {
         let misses = near::misses(scene, scene.inward(tolerance), &found);
@@ -174,14 +177,16 @@ fn met<S: Store>(
     Ok(found)
 }
 
-/// The meetings by elimination.
-fn decided(a: &[Vec2], b: &[Vec2]) -> Vec<Meeting> {
+/// The meetings by elimination, but for what runs together within rounding.
+fn decided<S: Store>(scene: &Scene<S>, a: &[Vec2], b: &[Vec2]) -> Vec<Meeting> {
     let [a, b] = IntegerCurve::of([a, b]);
     if a.degree() == 0 || b.degree() == 0 {
         return exact::meetings_of_point(&a, &b).into_iter().map(Meeting::from).collect();
     }
     match exact::meetings(&a, &b) {
-        Eliminated::Pairs(pairs) => pairs.into_iter().map(Meeting::from).collect(),
+        Eliminated::Pairs(pairs) => {
+            together::merged(together::overlaps(scene), pairs.into_iter().map(Meeting::from).collect())
+        }
         Eliminated::SameCurve => overlap::common(&a, &b),
     }
 }

@@ -4,7 +4,7 @@ use super::exact::{self, Eliminated, IntegerCurve};
 use super::part::{Part, Store};
 use super::scene::Scene;
 use super::search::Search;
-use super::{BUDGET, Contact, Meeting, overlap, touch};
+use super::{BUDGET, Contact, Meeting, overlap, together, touch};
 use crate::curve::{AnyBezier, Bernstein, Cubic, CubicShape, CurveError};
 use crate::math::Vec2;
 
@@ -13,16 +13,18 @@ use crate::math::Vec2;
 /// A cubic that is not on a line has at most one such point, in closed form. Other curves are halved until their parts
 /// turn less than a quarter, which cannot meet themselves, and parts are searched against one another as in
 /// [`intersect`](super::intersect); what rounding leaves open is decided by elimination up to degree 11. Curves that run
-/// back over themselves have overlaps. Cusps and turns are no meetings.
+/// back over themselves, also within the rounding of their control points, have overlaps. Cusps and turns are no
+/// meetings.
 ///
 /// # Errors
 /// [`CurveError::TooClose`] as [`intersect`](super::intersect), never up to degree 11.
 pub fn self_intersections<C: Bernstein<Vector = Vec2>>(curve: &C) -> Result<Vec<Meeting>, CurveError> {
     let points = curve.points();
-    let mut found = match of_cubic(points) {
+    let scene = Scene::new(points.to_vec(), points.to_vec());
+    let mut found = match together::own_on_line(&scene, points).or_else(|| of_cubic(points)) {
         Some(found) => found,
-        None if points.len() <= 4 => decided(points),
-        None => searched(points)?,
+        None if points.len() <= 4 => decided(&scene, points),
+        None => searched(&scene, points)?,
     };
     found.sort_by(|a, b| a.first[0].total_cmp(&b.first[0]).then(a.second[0].total_cmp(&b.second[0])));
     for meeting in &mut found {
@@ -54,24 +56,30 @@ fn of_cubic(points: &[Vec2]) -> Option<Vec<Meeting>> {
     }
 }
 
-fn decided(points: &[Vec2]) -> Vec<Meeting> {
+fn decided<S: Store>(scene: &Scene<S>, points: &[Vec2]) -> Vec<Meeting> {
     let [curve] = IntegerCurve::of([points]);
     match exact::own_meetings(&curve) {
-        Eliminated::Pairs(pairs) => pairs.into_iter().map(Meeting::from).collect(),
+        Eliminated::Pairs(pairs) => {
+            let exact = pairs.into_iter().map(Meeting::from).collect();
+            together::merged(together::own_overlap(scene).into_iter().collect(), exact)
+        }
         Eliminated::SameCurve => overlap::own(&curve),
     }
 }
 
-fn searched(points: &[Vec2]) -> Result<Vec<Meeting>, CurveError> {
-    let scene = Scene::new(points.to_vec(), points.to_vec());
+fn searched<S: Store>(scene: &Scene<S>, points: &[Vec2]) -> Result<Vec<Meeting>, CurveError> {
     let decidable = (points.len() - 2).pow(2) <= exact::MAX_ELIMINATED;
-    let mut search = Search::new(&scene, BUDGET, decidable);
+    let mut search = Search::new(scene, BUDGET, decidable);
     let [whole, _] = scene.parts();
     alone(&whole, &mut search);
     if search.open.is_empty() {
         return Ok(search.crossings.into_iter().map(Meeting::from).collect());
     }
-    if decidable { Ok(decided(points)) } else { touch::classified(&scene, search) }
+    if decidable {
+        return Ok(decided(scene, points));
+    }
+    let overlaps = together::own_overlap(scene).into_iter().collect();
+    touch::classified(scene, search, overlaps)
 }
 
 /// Searches a part against itself.

@@ -17,7 +17,12 @@ pub(super) struct Scene<S> {
     pub(super) rounding: f64,
     /// Bound of the second derivatives together.
     pub(super) bend: f64,
+    /// How far control points that were rounded when curves were cut may be from where they should be.
+    pub(super) grain: f64,
 }
+
+/// Coordinates with fewer digits than these are taken for exact ones.
+const COARSEST_GRAIN: f64 = 1.0 / (1_u64 << 26) as f64;
 
 impl<S: Store> Scene<S> {
     #[inline]
@@ -45,7 +50,10 @@ impl<S: Store> Scene<S> {
         let degree = a.as_ref().len().max(b.as_ref().len()) - 1;
         let rounding = 4.0 * U * (4.0 + 3.0 * degree as f64);
         let bend = bend(a.as_ref()) + bend(b.as_ref());
-        Scene { a, b, raw, scale, rounding, bend }
+        // A cut has two passes of as many blends in a row as the degree; each is off by 2 u of the largest coordinate as
+        // a rule, 3 u at worst. Both curves were cut, and are cut again to be compared.
+        let grain = 16.0 * degree as f64 * U * (largest * quarter * scale[1] * scale[2]).max(1.0);
+        Scene { a, b, raw, scale, rounding, bend, grain: grain.min(COARSEST_GRAIN) }
     }
 
     pub(super) fn parts(&self) -> [Part<S>; 2] {
@@ -60,6 +68,17 @@ impl<S: Store> Scene<S> {
     /// A length in model units in those of the scene.
     pub(super) fn inward(&self, length: f64) -> f64 {
         length * self.scale[0] * self.scale[1] * self.scale[2]
+    }
+
+    /// The coordinate along which curves run that are on one straight line within the grain, and no points; `None` for
+    /// others.
+    pub(super) fn common_axis(&self, curves: &[&[Vec2]]) -> Option<usize> {
+        let origin = curves[0][0];
+        let offsets = || curves.iter().flat_map(|points| points.iter()).map(|&p| p - origin);
+        let far = offsets().max_by(|p, q| p.length_squared().total_cmp(&q.length_squared()))?;
+        let direction = far.try_normalize()?;
+        let axis = usize::from(direction.y.abs() > direction.x.abs());
+        offsets().all(|p| direction.perp_dot(p).abs() <= self.grain).then_some(axis)
     }
 
     /// Whether the ends at parameters 0 or 1 are the same point, exactly.

@@ -1,22 +1,23 @@
 //! Places that rounding leaves open on curves of degrees too high for elimination.
 
-use super::part::{Part, Store};
+use super::part::Store;
 use super::scene::Scene;
 use super::search::{Open, Search};
-use super::{Contact, Meeting};
+use super::{Contact, Meeting, together};
 use crate::curve::CurveError;
 use crate::math::Vec2;
 
 /// Open pairs beyond which curves are called too close: a touch has a few dozen.
 const MAX_OPEN: usize = 2_000;
 
-/// The meetings of a search, its open places classified as far as rounding can tell.
+/// The overlaps and the meetings of a search, its open places classified as far as rounding can tell.
 pub(super) fn classified<S: Store>(
     scene: &Scene<S>,
     search: Search<'_, S>,
+    overlaps: Vec<Meeting>,
 ) -> Result<Vec<Meeting>, CurveError> {
     if search.open.len() > MAX_OPEN || search.budget_is_spent() {
-        return run_together(scene).map(|overlap| vec![overlap]).ok_or(CurveError::TooClose);
+        return if overlaps.is_empty() { Err(CurveError::TooClose) } else { Ok(overlaps) };
     }
     let mut found: Vec<Meeting> = search.crossings.into_iter().map(Meeting::from).collect();
     for group in groups(&search.open) {
@@ -27,10 +28,10 @@ pub(super) fn classified<S: Store>(
         };
         if off <= 4.0 * scene.rounding && !found.iter().any(near) {
             let contact = contact(scene, (s, t), group);
-            found.push(Meeting { first: [s; 2], second: [t; 2], point: Vec2::ZERO, contact });
+            found.push(Meeting::at(s, t, contact));
         }
     }
-    Ok(found)
+    Ok(together::merged(overlaps, found))
 }
 
 /// Open pairs that touch one another made one.
@@ -116,38 +117,4 @@ fn contact<S: Store>(scene: &Scene<S>, (s, t): (f64, f64), group: Open) -> Conta
     }
     let crosses = (side(-reach) > 0.0) != (side(reach) > 0.0);
     Contact::Tangency { multiplicity: if crosses { 3 } else { 2 } }
-}
-
-/// The overlap of curves that run together between ends: parts of polynomial curves that do so are linear in one
-/// another's parameters.
-fn run_together<S: Store>(scene: &Scene<S>) -> Option<Meeting> {
-    let ends = super::near::facing_ends(scene, 4.0 * scene.rounding);
-    let (from, to) = (ends.first()?, ends.last()?);
-    if to.0 <= from.0 || to.1 == from.1 {
-        return None;
-    }
-    let cut = |points: &S, low: f64, high: f64| {
-        let part = Part::whole(points.clone()).cut(low.min(high), low.max(high));
-        let mut points = part.points.as_ref().to_vec();
-        if low > high {
-            points.reverse();
-        }
-        points
-    };
-    let (a, b) = (cut(&scene.a, from.0, to.0), cut(&scene.b, from.1, to.1));
-    let degree = a.len().max(b.len()) - 1;
-    let raised = |points: Vec<Vec2>| {
-        let missing = degree + 1 - points.len();
-        crate::curve::AnyBezier::assume(points).elevated(missing)
-    };
-    let (a, b) = (raised(a), raised(b));
-    let pairs = crate::curve::Bernstein::points(&a).iter().zip(crate::curve::Bernstein::points(&b));
-    let apart = pairs.map(|(p, q)| (*p - *q).length()).fold(0.0, f64::max);
-    // Ends found by projection err by rounding over the speed; elevation adds a blend a step.
-    (apart <= 16.0 * scene.rounding).then_some(Meeting {
-        first: [from.0, to.0],
-        second: [from.1, to.1],
-        point: Vec2::ZERO,
-        contact: Contact::Overlap,
-    })
 }
