@@ -1,6 +1,7 @@
 //! Where a curve meets a straight line.
 
 use super::exact::{self, IntegerCurve};
+use super::scene::grain;
 use super::{Contact, Meeting, sorted};
 use crate::curve::bernstein::{BernsteinRoot, Roots, roots};
 use crate::curve::subdivide::{derivative, reciprocal_powers};
@@ -12,8 +13,9 @@ use crate::numeric::integer_polynomial::{Integer, IntegerPolynomial};
 /// beyond them, ascending along the curve.
 ///
 /// The distance from the line is a polynomial in Bernstein form, whose simple roots are certified in `f64`; what rounding
-/// leaves open is decided exactly up to degree 100, and beyond as far as rounding can tell. With a tolerance, in model
-/// units, places of the curve that come that near without meeting are reported as well.
+/// leaves open is decided exactly up to degree 100, and beyond as far as rounding can tell. A curve all of whose control
+/// points are on the line but for the rounding of the coordinates runs along it. With a tolerance, in model units, places
+/// of the curve that come that near without meeting are reported as well.
 ///
 /// # Errors
 /// [`CurveError::NotFinite`] when a point is not finite, [`CurveError::TooFewPoints`] when both are the same,
@@ -31,6 +33,7 @@ pub fn intersect_line<C: Bernstein<Vector = Vec2>>(
     }
     let view = View::new(curve.points(), from, to);
     let contacts = match roots(&view.heights, ROUNDING) {
+        _ if view.is_on_line() => None,
         Roots::At(roots)
             if roots.iter().all(|root| root.multiplicity == 1 && root.t > 0.0 && root.t < 1.0) =>
         {
@@ -70,6 +73,8 @@ struct View {
     /// The length of the line, and the factors that made it so.
     span: f64,
     scale: [f64; 3],
+    /// How far control points may be from the line because they, and the line's points, were rounded.
+    grain: f64,
 }
 
 impl View {
@@ -86,7 +91,16 @@ impl View {
         let [first, second] = if size > 0.0 { reciprocal_powers(size) } else { [1.0, 1.0] };
         let heights = offsets.iter().map(|&p| direction.perp_dot(p * first * second)).collect();
         let span = (step * first * second).dot(direction);
-        View { heights, from, direction, span, scale: [quarter, first, second] }
+        // What the line's own points are off grows with the distance from them.
+        let scale = [quarter, first, second];
+        let reach = 1.0 + 2.0 / span;
+        let grain = grain(points.len() - 1, largest * quarter * first * second * reach);
+        View { heights, from, direction, span, scale, grain }
+    }
+
+    /// Whether the curve is on the line as far as rounded points can tell.
+    fn is_on_line(&self) -> bool {
+        self.heights.iter().all(|h| h.abs() <= self.grain)
     }
 
     /// The line's parameter of a point.

@@ -50,10 +50,8 @@ impl<S: Store> Scene<S> {
         let degree = a.as_ref().len().max(b.as_ref().len()) - 1;
         let rounding = 4.0 * U * (4.0 + 3.0 * degree as f64);
         let bend = bend(a.as_ref()) + bend(b.as_ref());
-        // A cut has two passes of as many blends in a row as the degree; each is off by 2 u of the largest coordinate as
-        // a rule, 3 u at worst. Both curves were cut, and are cut again to be compared.
-        let grain = 16.0 * degree as f64 * U * (largest * quarter * scale[1] * scale[2]).max(1.0);
-        Scene { a, b, raw, scale, rounding, bend, grain: grain.min(COARSEST_GRAIN) }
+        let grain = grain(degree, largest * quarter * scale[1] * scale[2]);
+        Scene { a, b, raw, scale, rounding, bend, grain }
     }
 
     pub(super) fn parts(&self) -> [Part<S>; 2] {
@@ -114,6 +112,15 @@ impl<S: Store> Scene<S> {
         let rest = Vec2::new(axis(0), axis(1));
         (rest, 16.0 * degree * DoubleDouble::EPSILON + 2.0 * U * (rest.x.abs() + rest.y.abs()))
     }
+}
+
+/// How far control points of a degree and coordinates up to a size, in the units of a scene, may be off because they were
+/// rounded when a curve was cut or turned: 16 n u of the largest, 5e-15 of it for cubics.
+///
+/// A cut has two passes of as many blends in a row as the degree n; each is off by up to 3 u. That are 6 n u for one
+/// curve, 12 n u for two, and as much as is usual when they are cut again to be compared.
+pub(super) fn grain(degree: usize, largest: f64) -> f64 {
+    (16.0 * degree as f64 * U * largest.max(1.0)).min(COARSEST_GRAIN)
 }
 
 /// Bound of the second derivative in the sum norm.
