@@ -122,13 +122,6 @@ pub enum CurveError {
     },
     /// A path that must be closed is open.
     Open,
-    /// The degree is too high for this algorithm.
-    Degree {
-        /// The degree.
-        actual: usize,
-        /// The highest that it takes.
-        most: usize,
-    },
     /// Two curves run so near to one another for so long, without being one, that their meetings cannot be told apart.
     TooClose,
     /// The equations of an interpolation have no unique solution at this size.
@@ -154,7 +147,6 @@ impl fmt::Display for CurveError {
                 write!(f, "piece {piece} does not start where the one before it ends")
             }
             CurveError::Open => write!(f, "the path is not closed"),
-            CurveError::Degree { actual, most } => write!(f, "degree {actual} where {most} is the highest"),
             CurveError::TooClose => {
                 write!(f, "the curves are too close to one another to tell where they meet")
             }

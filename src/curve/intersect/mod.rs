@@ -5,7 +5,8 @@
 //! curves of which rounding leaves anything open (they touch, share ends in the inner of one another, or overlap) is
 //! decided by elimination in integers of any size ([`exact`], [`overlap`]): control points are fractions, so the answer
 //! is that of the curves as given. Where the product of degrees is too high for that, it is that of curves whose control
-//! points differ by rounding ([`touch`]).
+//! points differ by rounding ([`touch`]). Parts of one curve, whose control points cutting has rounded, are never exactly
+//! the same: what runs together within that rounding is an overlap all the same ([`together`]).
 
 mod exact;
 mod line;
@@ -100,8 +101,10 @@ const SHORT_BUDGET: usize = 1_000;
 /// Where two curves meet, ascending along the first.
 ///
 /// Exact in number, order and kind for curves of degrees whose product is at most 100; parameters are right to a few
-/// units in the last place of 1, and to the last one where the curves touch. A curve that is a point meets another at
-/// parameter 0. With a tolerance, in model units, places where the curves come that near without meeting, and nearer
+/// units in the last place of 1, and to the last one where the curves touch. One exception is made from exactness: where
+/// the curves, between places at which one of them ends, are the same up to 16 n u of the largest coordinate (n the
+/// higher degree, u = 2^-53; 5e-15 of it for cubics), which is what it costs to cut them out of one curve, they overlap.
+/// A curve that is a point meets another at parameter 0. With a tolerance, in model units, places where the curves come that near without meeting, and nearer
 /// than around, are reported as well.
 ///
 /// # Errors
