@@ -25,49 +25,68 @@ pub(super) fn eval_batch<P: Blend>(points: &[P], parameters: &[f64], out: &mut [
 }
 
 fn in_dimension<P: Blend, const D: usize>(points: &[P], parameters: &[f64], out: &mut [P]) {
+    let ends = [points[0], points[points.len() - 1]];
     if let [a, b, c, d] = *points {
         let centred = centred::<P, D>([a, b, c, d]);
-        blocks(points, parameters, out, |t, out| cubic_block(&centred, t, out));
+        blocks(ends, parameters, out, |t, out| cubic_block(&centred, t, out));
     } else {
-        let scaled = with_binomials(points);
-        blocks(points, parameters, out, |t, out| horner_block::<P, D>(&scaled, t, out));
+        let middle = middle_of_box(points);
+        let weighted = with_binomials(points, middle);
+        blocks(ends, parameters, out, |t, out| horner_block::<P, D>(&weighted, middle, t, out));
     }
 }
 
 /// Runs `block` over the parameters, eight at a time, and puts the ends where they belong: the last bits of a sum are not
 /// those of an end point.
-#[inline]
+#[inline(always)]
 fn blocks<P: Blend>(
-    points: &[P],
+    ends: [P; 2],
     parameters: &[f64],
     out: &mut [P],
     block: impl Fn(&[f64; LANES], &mut [P; LANES]),
 ) {
-    let ends = [points[0], points[points.len() - 1]];
-    let whole = |t: &[f64; LANES], out: &mut [P; LANES]| {
-        block(t, out);
-        if t.iter().fold(false, |any, &t| any | (t == 0.0) | (t == 1.0)) {
-            for (place, &t) in out.iter_mut().zip(t) {
-                *place = if t == 0.0 { ends[0] } else { *place };
-                *place = if t == 1.0 { ends[1] } else { *place };
-            }
-        }
-    };
     let (chunks, rest) = parameters.as_chunks::<LANES>();
     let (places, last) = out.as_chunks_mut::<LANES>();
     for (t, out) in chunks.iter().zip(places) {
-        whole(t, out);
+        block(t, out);
+        if reach_ends(t) {
+            put_ends(ends, t, out);
+        }
     }
     if !rest.is_empty() {
         let (mut t, mut points) = ([0.5; LANES], [P::ZERO; LANES]);
         t[..rest.len()].copy_from_slice(rest);
-        whole(&t, &mut points);
+        block(&t, &mut points);
+        put_ends(ends, &t, &mut points);
         last.copy_from_slice(&points[..last.len()]);
     }
 }
 
-/// Coefficients of a cubic by powers of 2t - 1: there the powers are at most 1 and the coefficients no larger than twice
-/// the points, so that Horner's scheme is off by a few u only. Sums are taken with their errors.
+/// Whether a parameter may be 0 or 1: a fold of two lanes, which is a vector instruction a pair.
+#[inline(always)]
+fn reach_ends(t: &[f64; LANES]) -> bool {
+    let mut most = [0.0_f64; 2];
+    for pair in t.as_chunks::<2>().0 {
+        for lane in 0..2 {
+            let x = pair[lane] - 0.5;
+            let square = x * x;
+            most[lane] = if square > most[lane] { square } else { most[lane] };
+        }
+    }
+    most[0] >= 0.25 || most[1] >= 0.25
+}
+
+#[cold]
+fn put_ends<P: Blend>(ends: [P; 2], t: &[f64; LANES], out: &mut [P; LANES]) {
+    for (place, &t) in out.iter_mut().zip(t) {
+        if t == 0.0 || t == 1.0 {
+            *place = ends[usize::from(t == 1.0)];
+        }
+    }
+}
+
+/// Coefficients of a cubic by powers of t - 1/2: the terms are no larger than twice the points, so that Horner's scheme is
+/// off by a few u only. Sums are taken with their errors.
 fn centred<P: Blend, const D: usize>([a, b, c, d]: [P; 4]) -> [[f64; 4]; D] {
     std::array::from_fn(|axis| {
         let [a, b, c, d] = [a, b, c, d].map(|p| p.component(axis));
@@ -75,19 +94,19 @@ fn centred<P: Blend, const D: usize>([a, b, c, d]: [P; 4]) -> [[f64; 4]; D] {
         let ((wide, wide_rest), (narrow, narrow_rest)) = (two_sum(d, -a), two_sum(c, -b));
         [
             0.125 * ((outer + 3.0 * inner) + (outer_rest + 3.0 * inner_rest)),
-            0.375 * ((wide + narrow) + (wide_rest + narrow_rest)),
-            0.375 * ((outer - inner) + (outer_rest - inner_rest)),
-            0.125 * ((wide - 3.0 * narrow) + (wide_rest - 3.0 * narrow_rest)),
+            0.75 * ((wide + narrow) + (wide_rest + narrow_rest)),
+            1.5 * ((outer - inner) + (outer_rest - inner_rest)),
+            (wide - 3.0 * narrow) + (wide_rest - 3.0 * narrow_rest),
         ]
     })
 }
 
-#[inline]
+#[inline(always)]
 fn cubic_block<P: Blend, const D: usize>(c: &[[f64; 4]; D], t: &[f64; LANES], out: &mut [P; LANES]) {
     let mut values = [[0.0; LANES]; D];
     for (values, [c0, c1, c2, c3]) in values.iter_mut().zip(c) {
         for lane in 0..LANES {
-            let x = (t[lane] + t[lane]) - 1.0;
+            let x = t[lane] - 0.5;
             values[lane] = c0 + x * (c1 + x * (c2 + x * c3));
         }
     }
@@ -96,12 +115,20 @@ fn cubic_block<P: Blend, const D: usize>(c: &[[f64; 4]; D], t: &[f64; LANES], ou
     }
 }
 
-/// The control points times their binomials, each rounded once.
-fn with_binomials<P: Blend>(points: &[P]) -> Vec<P> {
+/// The middle of the control points' box: seen from there the points are smallest, and so is what rounding makes of them.
+fn middle_of_box<P: Blend>(points: &[P]) -> P {
+    let (low, high) = points.iter().fold((points[0], points[0]), |(low, high), &p| {
+        (low.zip(p, |a, b| if b < a { b } else { a }), high.zip(p, |a, b| if b > a { b } else { a }))
+    });
+    (low + high) * 0.5
+}
+
+/// The control points as seen from `middle`, times their binomials, each rounded once.
+fn with_binomials<P: Blend>(points: &[P], middle: P) -> Vec<P> {
     let n = points.len() - 1;
     let mut binomial = DoubleDouble::from(1.0);
     let weigh = |(k, &point): (usize, &P)| {
-        let weighted = point.map(|x| (binomial * x).to_f64());
+        let weighted = point.zip(middle, |x, m| (binomial * DoubleDouble::difference(x, m)).to_f64());
         binomial = binomial * (n - k) as f64 / DoubleDouble::from((k + 1) as f64);
         weighted
     };
@@ -111,9 +138,9 @@ fn with_binomials<P: Blend>(points: &[P]) -> Vec<P> {
 /// Horner-Bernstein over eight parameters and `D` components at once.
 ///
 /// Where `1 - t` is rounded to s, the form gives the value at t / (t + s) times (t + s)^n; the power is taken out again.
-#[inline]
-fn horner_block<P: Blend, const D: usize>(scaled: &[P], t: &[f64; LANES], out: &mut [P; LANES]) {
-    let n = scaled.len() - 1;
+#[inline(always)]
+fn horner_block<P: Blend, const D: usize>(weighted: &[P], middle: P, t: &[f64; LANES], out: &mut [P; LANES]) {
+    let n = weighted.len() - 1;
     let mut sums = [[0.0; LANES]; D];
     let mut power = [1.0; LANES];
     let mut rest = [0.0; LANES];
@@ -122,7 +149,7 @@ fn horner_block<P: Blend, const D: usize>(scaled: &[P], t: &[f64; LANES], out: &
         rest[lane] = 1.0 - t[lane];
         correction[lane] = n as f64 * ((1.0 - rest[lane]) - t[lane]);
     }
-    for point in &scaled[..n] {
+    for point in &weighted[..n] {
         for (axis, sum) in sums.iter_mut().enumerate() {
             let b = point.component(axis);
             for lane in 0..LANES {
@@ -134,10 +161,10 @@ fn horner_block<P: Blend, const D: usize>(scaled: &[P], t: &[f64; LANES], out: &
         }
     }
     for (axis, sum) in sums.iter_mut().enumerate() {
-        let b = scaled[n].component(axis);
+        let (b, middle) = (weighted[n].component(axis), middle.component(axis));
         for lane in 0..LANES {
             let value = sum[lane] + power[lane] * b;
-            sum[lane] = value + value * correction[lane];
+            sum[lane] = middle + (value + value * correction[lane]);
         }
     }
     for (lane, place) in out.iter_mut().enumerate() {

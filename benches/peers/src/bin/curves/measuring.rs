@@ -16,24 +16,26 @@ fn wang(curve: &Cubic<Vec2>, tolerance: f64) -> f64 {
     (0.75 * second / tolerance).sqrt().ceil().max(1.0)
 }
 
-/// The farthest that a polyline's chords are from the curve, over the tolerance, by dense samples: each against its own
-/// chord, the two walked together.
+/// The distance of curve and polyline in the sense of Fréchet over the tolerance, by dense samples: walked together from
+/// end to end, never back, in the way that keeps them nearest to one another. (The nearest chord alone would overlook
+/// turns that are cut off; the next chord as soon as it is nearer goes astray at loops.)
 fn violation(curve: &Cubic<Vec2>, points: &[Vec2], tolerance: f64) -> f64 {
-    let mut at = 0;
-    let mut worst: f64 = 0.0;
-    for k in 0..=1000 {
-        let p = curve.eval(f64::from(k) / 1000.0);
-        let distance = |i: usize| {
+    const SAMPLES: u32 = 1000;
+    let mut worst = vec![f64::INFINITY; points.len() - 1];
+    worst[0] = 0.0;
+    for k in 0..=SAMPLES {
+        let p = curve.eval(f64::from(k) / f64::from(SAMPLES));
+        let mut reachable = f64::INFINITY;
+        for (i, worst) in worst.iter_mut().enumerate() {
+            // Samples up to here end on this chord or on one before it.
+            reachable = reachable.min(*worst);
             let (a, b) = (points[i], points[i + 1]);
             let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-            (p - a - (b - a) * if along.is_nan() { 0.0 } else { along }).length()
-        };
-        while at + 2 < points.len() && distance(at + 1) <= distance(at) {
-            at += 1;
+            let distance = (p - a - (b - a) * if along.is_nan() { 0.0 } else { along }).length();
+            *worst = reachable.max(distance);
         }
-        worst = worst.max(distance(at));
     }
-    worst / tolerance
+    worst[worst.len() - 1] / tolerance
 }
 
 fn kurbo_points(curve: &Cubic<Vec2>, tolerance: f64) -> Vec<Vec2> {
