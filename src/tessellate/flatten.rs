@@ -84,6 +84,9 @@ fn append<C: Bernstein>(curve: &C, tolerance: f64, [low, high]: [f64; 2], out: &
     // Scaling towards size 1 keeps numbers finite.
     let moved = if shift == 0 { None } else { curve.map(|point| point.map(|x| scaled(x, shift))).ok() };
     let unit = moved.as_ref().unwrap_or(curve);
+    let expected = expected_chords(unit.points(), scaled(tolerance, shift));
+    out.points.reserve(expected);
+    out.parameters.reserve(expected);
     let mut walk = Walk::new(unit, scaled(tolerance, shift));
     for stop in stops(unit) {
         while walk.t < stop {
@@ -103,6 +106,15 @@ fn shift_to_unit<P: Blend>(points: &[P]) -> i32 {
     }
     let exponent = (size.to_bits() >> 52) as i32 - 1023;
     -exponent.clamp(-1000, 1000)
+}
+
+/// About as many as there will be: six tenths of what second differences ask for (Wang's formula); no more than a few
+/// thousand, since it is a guess.
+fn expected_chords<P: Blend>(points: &[P], tolerance: f64) -> usize {
+    let n = (points.len() - 1) as f64;
+    let bends = points.windows(3).map(|p| (p[2] - p[1] * 2.0 + p[0]).max_abs());
+    let bend = bends.fold(0.0, f64::max);
+    2 + (0.6 * (0.125 * n * (n - 1.0) * bend / tolerance).sqrt()).min(4096.0) as usize
 }
 
 /// Where chords must end: the end of the curve, and before it cusps and turns. Those are rare, and looked for only when
@@ -166,14 +178,19 @@ struct Walk<'a, C: Bernstein> {
     start: (C::Vector, C::Vector),
     /// The step that is expected to fill the tolerance.
     step: f64,
+    /// The step that would have filled it for the last chord.
+    filling: f64,
 }
 
 /// A chord that uses this share of the tolerance is long enough.
-const ENOUGH: f64 = 0.85;
+const ENOUGH: f64 = 0.75;
 /// Chords of one start that fit before the longest of them is taken.
 const MOST_FITS: u32 = 5;
 /// The share of the tolerance that a guess aims at.
-const AIM: f64 = 0.95;
+const AIM: f64 = 0.92;
+/// The most by which the next chord is expected to be longer or shorter than this one, as this one was than the last:
+/// with it four chords are tried for three that are taken, else six.
+const TREND: f64 = 1.3;
 
 impl<'a, C: Bernstein> Walk<'a, C> {
     fn new(curve: &'a C, tolerance: f64) -> Walk<'a, C> {
@@ -186,11 +203,14 @@ impl<'a, C: Bernstein> Walk<'a, C> {
             _ => None,
         };
         let start = cubic.map_or((points[0], C::Vector::ZERO), |[a, b, _, _]| (a, b - a));
-        Walk { curve, cubic, tolerance, rounding: rounding(points), t: 0.0, start, step: 0.25 }
+        Walk { curve, cubic, tolerance, rounding: rounding(points), t: 0.0, start, step: 0.25, filling: 0.25 }
     }
 
-    /// Moves to the end of a chord.
-    fn take(&mut self, to: f64, chord: Chord<C::Vector>) -> Chord<C::Vector> {
+    /// Moves to the end of a chord of which another width would have filled the tolerance.
+    #[inline]
+    fn take(&mut self, to: f64, chord: Chord<C::Vector>, filling: f64) -> Chord<C::Vector> {
+        self.step = filling * (filling / self.filling).clamp(1.0 / TREND, TREND);
+        self.filling = filling.max(f64::MIN_POSITIVE);
         self.t = to;
         self.start = (chord.end, chord.arriving);
         chord
@@ -199,7 +219,7 @@ impl<'a, C: Bernstein> Walk<'a, C> {
     /// Takes the longest chord towards `stop`, nearly, and moves to its end.
     fn advance(&mut self, stop: f64) -> Chord<C::Vector> {
         let from = self.t;
-        let mut longest: Option<(f64, Chord<C::Vector>)> = None;
+        let mut longest: Option<(f64, Chord<C::Vector>, f64)> = None;
         let (mut too_long, mut step, mut fits) = (f64::INFINITY, self.step, 0);
         loop {
             let to = if from + 1.001 * step >= stop { stop } else { (from + step).max(from.next_up()) };
@@ -209,14 +229,13 @@ impl<'a, C: Bernstein> Walk<'a, C> {
             // Neighbouring parameters: what is left is rounding.
             if fill <= 1.0 || to <= from.next_up() {
                 fits += 1;
-                self.step = guess;
                 if fill >= ENOUGH || to == stop || fits == MOST_FITS {
-                    return self.take(to, chord);
+                    return self.take(to, chord, guess);
                 }
-                longest = Some((to, chord));
+                longest = Some((to, chord, guess));
                 step = guess.max(1.05 * width).min(0.5 * width + 0.5 * too_long);
-            } else if let Some((to, chord)) = longest {
-                return self.take(to, chord);
+            } else if let Some((to, chord, guess)) = longest {
+                return self.take(to, chord, guess);
             } else {
                 too_long = width;
                 step = guess.clamp(0.1 * width, 0.9 * width);
@@ -271,10 +290,14 @@ fn offset<P: Blend>(point: P, start: P, chord: P, share: f64, across: bool) -> P
     from_start - chord * along
 }
 
+#[inline]
 fn cubic_bound<P: Blend>(points: &[P; 4]) -> f64 {
     let [a, b, c, d] = *points;
     let chord = d - a;
     let across = advances(points, chord);
+    if across && P::DIMENSION == 2 {
+        return plane_bound(b - a, c - a, chord);
+    }
     let (v, w) = (offset(b, a, chord, 1.0 / 3.0, across), offset(c, a, chord, 2.0 / 3.0, across));
     // The second offset split into a multiple of the first and a rest across it; in the plane there is none.
     let square = v.inner(v);
@@ -282,6 +305,24 @@ fn cubic_bound<P: Blend>(points: &[P; 4]) -> f64 {
     let rest = w - v * multiple;
     let (main, side) = (square.sqrt() * peak(multiple), 4.0 / 9.0 * rest.norm());
     (main * main + side * side).sqrt()
+}
+
+/// The bound across the chord in the plane, where offsets are cross products.
+#[inline]
+fn plane_bound<P: Blend>(b: P, c: P, chord: P) -> f64 {
+    let height = |p: P| chord.component(0) * p.component(1) - chord.component(1) * p.component(0);
+    let (v, w) = (height(b), height(c));
+    // The peak is on the side of the larger one.
+    let (main, other) = if v.abs() >= w.abs() { (v, w) } else { (w, v) };
+    if main == 0.0 {
+        return 0.0;
+    }
+    let r = other / main;
+    // The derivative of t (1 - t) ((1 - t) + r t) is 1 + 2 (r - 2) t - 3 (r - 1) t^2.
+    let half = 2.0 - r;
+    let t = 1.0 / (half + (half * half - 3.0 * (1.0 - r)).max(0.0).sqrt());
+    let peak = 3.0 * t * (1.0 - t) * ((1.0 - t) + r * t) * (1.0 + 8.0 * f64::EPSILON);
+    main.abs() * peak / chord.inner(chord).sqrt()
 }
 
 /// The largest magnitude over [0, 1] of `3 t (1 - t) ((1 - t) + r t)`.

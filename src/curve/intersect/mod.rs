@@ -1,8 +1,9 @@
 //! Where curves meet: with a line, with another curve, with themselves, each meeting classified.
 //!
 //! First in `f64`: parts of the curves that are apart, or cross once, are proved so by their hulls with all rounding
-//! allowed for, and crossings are found by Newton's iteration and proved by Kantorovich's theorem ([`search`]). A pair of
-//! curves of which rounding leaves anything open (they touch, share ends in the inner of one another, or overlap) is
+//! allowed for, and crossings are found by Newton's iteration and proved by Kantorovich's theorem ([`search`]); places that
+//! rounding leaves open are looked at again through a window of their own ([`zoom`]). A pair of curves of which even that
+//! leaves anything open (they touch, share ends in the inner of one another, or overlap) is
 //! decided by elimination in integers of any size ([`exact`], [`overlap`]): control points are fractions, so the answer
 //! is that of the curves as given. Where the product of degrees is too high for that, it is that of curves whose control
 //! points differ by rounding ([`touch`]). Parts of one curve, whose control points cutting has rounded, are never exactly
@@ -18,6 +19,7 @@ mod scene;
 mod search;
 mod together;
 mod touch;
+mod zoom;
 
 pub use line::intersect_line;
 pub use own::self_intersections;
@@ -161,13 +163,15 @@ fn met<S: Store>(
     tolerance: Option<f64>,
 ) -> Result<Vec<Meeting>, CurveError> {
     let decidable = (a.len() - 1) * (b.len() - 1) <= exact::MAX_ELIMINATED;
-    let mut search = Search::new(scene, if decidable { SHORT_BUDGET } else { BUDGET }, decidable);
+    let mut search = Search::new(scene, if decidable { SHORT_BUDGET } else { BUDGET }, false);
     let [whole_a, whole_b] = scene.parts();
     search.run(&whole_a, &whole_b);
     let mut found = if search.open.is_empty() {
         search.crossings.into_iter().map(Meeting::from).collect()
     } else if let Some(found) = together::on_line(scene, a, b) {
         found
+    } else if let Some(crossings) = zoom::settled(scene, &search) {
+        crossings.into_iter().map(Meeting::from).collect()
     } else if decidable {
         decided(scene, a, b)
     } else {

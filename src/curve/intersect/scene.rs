@@ -19,6 +19,8 @@ pub(super) struct Scene<S> {
     pub(super) bend: f64,
     /// How far control points that were rounded when curves were cut may be from where they should be.
     pub(super) grain: f64,
+    /// Whether the ends are ends of whole curves.
+    is_whole: bool,
 }
 
 /// Coordinates with fewer digits than these are taken for exact ones.
@@ -51,7 +53,7 @@ impl<S: Store> Scene<S> {
         let rounding = 4.0 * U * (4.0 + 3.0 * degree as f64);
         let bend = bend(a.as_ref()) + bend(b.as_ref());
         let grain = grain(degree, largest * quarter * scale[1] * scale[2]);
-        Scene { a, b, raw, scale, rounding, bend, grain }
+        Scene { a, b, raw, scale, rounding, bend, grain, is_whole: true }
     }
 
     pub(super) fn parts(&self) -> [Part<S>; 2] {
@@ -79,39 +81,65 @@ impl<S: Store> Scene<S> {
         offsets().all(|p| direction.perp_dot(p).abs() <= self.grain).then_some(axis)
     }
 
-    /// Whether the ends at parameters 0 or 1 are the same point, exactly.
+    /// Whether the ends at parameters 0 or 1 are the same point, exactly; that of windows is not known.
     pub(super) fn ends_are_equal(&self, s: f64, t: f64) -> bool {
         let end = |points: &[Vec2], t: f64| points[if t == 0.0 { 0 } else { points.len() - 1 }];
-        end(self.raw[0].as_ref(), s) == end(self.raw[1].as_ref(), t)
+        self.is_whole && end(self.raw[0].as_ref(), s) == end(self.raw[1].as_ref(), t)
+    }
+
+    /// The parts of both curves between parameters (low and high of the first, then of the second) as a scene of their
+    /// own; `None` where they are so small that rounding shows even in double-double.
+    pub(super) fn window(&self, [a_low, a_high, b_low, b_high]: [f64; 4]) -> Option<Scene<S>> {
+        let [mut a, mut b] = self.raw.clone();
+        for axis in 0..2 {
+            let curves = [&self.raw[0], &self.raw[1]].map(|points| self.exact(points.as_ref(), axis));
+            let blossom = |k: usize, i: usize, low: f64, high: f64| blossom(curves[k].clone(), i, low, high);
+            let origin = blossom(0, 0, a_low, a_high);
+            for (i, p) in a.as_mut().iter_mut().enumerate() {
+                p[axis] = (blossom(0, i, a_low, a_high) - origin).to_f64();
+            }
+            for (i, p) in b.as_mut().iter_mut().enumerate() {
+                p[axis] = (blossom(1, i, b_low, b_high) - origin).to_f64();
+            }
+        }
+        let size =
+            a.as_ref().iter().chain(b.as_ref()).fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
+        // Double-double rounds 2^-104 of the curves, a few dozen times; the parts' f64 rounds 2^-53 of their size.
+        let is_clear = size > 1.0 / (1_u64 << 44) as f64;
+        is_clear.then(|| Scene { is_whole: false, ..Scene::new(a, b) })
+    }
+
+    /// A coordinate of control points in the scene, without rounding.
+    fn exact(&self, points: &[Vec2], axis: usize) -> Vec<DoubleDouble> {
+        let [quarter, first, second] = self.scale;
+        let origin = self.raw[0].as_ref()[0][axis] * quarter;
+        let difference = |p: &Vec2| DoubleDouble::difference(p[axis] * quarter, origin);
+        let scaled = |x: DoubleDouble| DoubleDouble { hi: x.hi * first * second, lo: x.lo * first * second };
+        points.iter().map(difference).map(scaled).collect()
     }
 
     /// The second curve's point less the first one's, in double-double, and the bound of its error.
     pub(super) fn residual(&self, s: f64, t: f64) -> (Vec2, f64) {
-        let [quarter, first, second] = self.scale;
         let axis = |axis: usize| {
-            let of = |points: &[Vec2], t: f64| {
-                let exact = |p: &Vec2| {
-                    DoubleDouble::difference(p[axis] * quarter, self.raw[0].as_ref()[0][axis] * quarter)
-                };
-                let mut row: Vec<DoubleDouble> = points
-                    .iter()
-                    .map(exact)
-                    .map(|x| DoubleDouble { hi: x.hi * first * second, lo: x.lo * first * second })
-                    .collect();
-                let rest = DoubleDouble::difference(1.0, t);
-                for count in (1..row.len()).rev() {
-                    for i in 0..count {
-                        row[i] = row[i] * rest + row[i + 1] * t;
-                    }
-                }
-                row[0]
-            };
-            (of(self.raw[1].as_ref(), t) - of(self.raw[0].as_ref(), s)).to_f64()
+            let [on_a, on_b] = [&self.raw[0], &self.raw[1]].map(|points| self.exact(points.as_ref(), axis));
+            (blossom(on_b, 0, t, t) - blossom(on_a, 0, s, s)).to_f64()
         };
         let degree = self.a.as_ref().len().max(self.b.as_ref().len()) as f64;
         let rest = Vec2::new(axis(0), axis(1));
         (rest, 16.0 * degree * DoubleDouble::EPSILON + 2.0 * U * (rest.x.abs() + rest.y.abs()))
     }
+}
+
+/// The polar form at `high` as often as `highs` says and else at `low`: that control point of the part between them.
+fn blossom(mut row: Vec<DoubleDouble>, highs: usize, low: f64, high: f64) -> DoubleDouble {
+    for count in (1..row.len()).rev() {
+        let t = if count <= highs { high } else { low };
+        let rest = DoubleDouble::difference(1.0, t);
+        for i in 0..count {
+            row[i] = row[i] * rest + row[i + 1] * t;
+        }
+    }
+    row[0]
 }
 
 /// How far control points of a degree and coordinates up to a size, in the units of a scene, may be off because they were

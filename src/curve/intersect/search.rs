@@ -13,6 +13,14 @@ pub(super) struct Crossing {
     pub(super) radius: [f64; 2],
 }
 
+impl Crossing {
+    /// Whether the other one may be the same, which it then is: each is the only one for far around.
+    pub(super) fn is_same(&self, other: &Crossing) -> bool {
+        (other.s - self.s).abs() <= other.radius[0] + self.radius[0]
+            && (other.t - self.t).abs() <= other.radius[1] + self.radius[1]
+    }
+}
+
 /// What rounding leaves open: parameters of both curves, low and high.
 pub(super) type Open = [f64; 4];
 
@@ -174,11 +182,7 @@ impl<'a, S: Store> Search<'a, S> {
     /// Keeps a crossing, once: neighbouring parts find the same one at their common end.
     fn add(&mut self, crossing: Crossing, a: &Part<S>, b: &Part<S>) {
         let Some(crossing) = self.within_both(crossing) else { return self.leave_open(a, b) };
-        let same = |other: &Crossing| {
-            (other.s - crossing.s).abs() <= other.radius[0] + crossing.radius[0]
-                && (other.t - crossing.t).abs() <= other.radius[1] + crossing.radius[1]
-        };
-        if !self.crossings.iter().any(same) {
+        if !self.crossings.iter().any(|known| known.is_same(&crossing)) {
             self.crossings.push(crossing);
         }
     }
