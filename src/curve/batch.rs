@@ -28,37 +28,55 @@ fn in_dimension<P: Blend, const D: usize>(points: &[P], parameters: &[f64], out:
     let ends = [points[0], points[points.len() - 1]];
     if let [a, b, c, d] = *points {
         let centred = centred::<P, D>([a, b, c, d]);
-        blocks(ends, parameters, out, |t, out| cubic_block(&centred, t, out));
+        blocks(parameters, out, |t, out| cubic_blocks(&centred, ends, t, out));
     } else {
         let middle = middle_of_box(points);
         let weighted = with_binomials(points, middle);
-        blocks(ends, parameters, out, |t, out| horner_block::<P, D>(&weighted, middle, t, out));
+        blocks(parameters, out, |t, out| horner_blocks::<P, D>(&weighted, middle, ends, t, out));
     }
 }
 
-/// Runs `block` over the parameters, eight at a time, and puts the ends where they belong: the last bits of a sum are not
-/// those of an end point.
+/// Runs `work` over the parameters, eight at a time, the last ones filled up to eight.
 #[inline(always)]
-fn blocks<P: Blend>(
-    ends: [P; 2],
-    parameters: &[f64],
-    out: &mut [P],
-    block: impl Fn(&[f64; LANES], &mut [P; LANES]),
-) {
+fn blocks<P: Blend>(parameters: &[f64], out: &mut [P], work: impl Fn(&[[f64; LANES]], &mut [[P; LANES]])) {
     let (chunks, rest) = parameters.as_chunks::<LANES>();
     let (places, last) = out.as_chunks_mut::<LANES>();
-    for (t, out) in chunks.iter().zip(places) {
-        block(t, out);
+    work(chunks, places);
+    if !rest.is_empty() {
+        let (mut t, mut points) = ([[0.5; LANES]], [[P::ZERO; LANES]]);
+        t[0][..rest.len()].copy_from_slice(rest);
+        work(&t, &mut points);
+        last.copy_from_slice(&points[0][..last.len()]);
+    }
+}
+
+/// One loop, in which the coefficients stay where they are.
+fn cubic_blocks<P: Blend, const D: usize>(
+    c: &[[f64; 4]; D],
+    ends: [P; 2],
+    t: &[[f64; LANES]],
+    out: &mut [[P; LANES]],
+) {
+    for (t, out) in t.iter().zip(out) {
+        cubic_block(c, t, out);
         if reach_ends(t) {
             put_ends(ends, t, out);
         }
     }
-    if !rest.is_empty() {
-        let (mut t, mut points) = ([0.5; LANES], [P::ZERO; LANES]);
-        t[..rest.len()].copy_from_slice(rest);
-        block(&t, &mut points);
-        put_ends(ends, &t, &mut points);
-        last.copy_from_slice(&points[..last.len()]);
+}
+
+fn horner_blocks<P: Blend, const D: usize>(
+    weighted: &[P],
+    middle: P,
+    ends: [P; 2],
+    t: &[[f64; LANES]],
+    out: &mut [[P; LANES]],
+) {
+    for (t, out) in t.iter().zip(out) {
+        horner_block::<P, D>(weighted, middle, t, out);
+        if reach_ends(t) {
+            put_ends(ends, t, out);
+        }
     }
 }
 
@@ -76,6 +94,7 @@ fn reach_ends(t: &[f64; LANES]) -> bool {
     most[0] >= 0.25 || most[1] >= 0.25
 }
 
+/// The ends where they belong: the last bits of a sum are not those of an end point.
 #[cold]
 fn put_ends<P: Blend>(ends: [P; 2], t: &[f64; LANES], out: &mut [P; LANES]) {
     for (place, &t) in out.iter_mut().zip(t) {

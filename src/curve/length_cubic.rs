@@ -37,6 +37,12 @@ fn size([a, b]: Complex) -> f64 {
     (a * a + b * b).sqrt()
 }
 
+/// At least the size, and at most 1.5 times that: for bounds, without a root.
+#[inline]
+fn reach_of([a, b]: Complex) -> f64 {
+    a.abs() + b.abs()
+}
+
 fn root([a, b]: Complex) -> Complex {
     let r = size([a, b]);
     let x = (0.5 * (r + a.abs())).sqrt();
@@ -64,7 +70,7 @@ pub(super) fn length(points: [Complex; 4], accuracy: f64) -> Option<Bounded<f64>
     let scale = first * second;
     let [a, b, c, d] = points.map(|p| scaled(p, scale));
     let velocity = [minus(b, a), minus(c, b), minus(d, c)].map(|v| scaled(v, 3.0));
-    let polygon: f64 = velocity.iter().map(|&v| size(v)).sum::<f64>() / 3.0;
+    let polygon: f64 = velocity.iter().map(|&v| reach_of(v)).sum::<f64>() / 3.0;
     // Finer than rounding is not to be had.
     let rounding = 24.0 * U * polygon;
     let wish = (accuracy * scale).max(4.0 * U * polygon);
@@ -112,10 +118,11 @@ impl Walk {
         }
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let [c0, c1, c2] = self.about(middle, half);
-        let rhos = self.roots.map(|root| ellipse(root, middle, half));
-        let rho = rhos[0].min(rhos[1]).min(8.0);
+        let inverse = 1.0 / half;
+        let sums = self.roots.map(|root| foci_distance(root, middle, inverse));
+        let rho = ellipse(sums[0].min(sums[1]));
         if rho > 1.25 {
-            let (limit, decay) = coefficient_limit(size(c0), size(c1), size(c2), rho);
+            let (limit, decay) = coefficient_limit(reach_of(c0), reach_of(c1), reach_of(c2), rho);
             if let Some((rule, bound)) = shortest_rule(half * limit, decay, self.share) {
                 self.length += half * quadrature(rule, c0, c1, c2);
                 self.error += bound;
@@ -133,7 +140,7 @@ impl Walk {
             self.error += spread;
             return;
         }
-        let worst = self.roots[usize::from(rhos[1] < rhos[0])][0];
+        let worst = self.roots[usize::from(sums[1] < sums[0])][0];
         let cut = cut(low, high, worst);
         if !(cut > low && cut < high) {
             self.pieces = MAX_PIECES;
@@ -168,17 +175,22 @@ fn cut(low: f64, high: f64, root: f64) -> f64 {
     }
 }
 
-/// The sum of half-axes of the ellipse about -1 and 1 that goes through a root, in the piece's own parameter, a little
-/// less for rounding; roots on the curve at a piece's end are those of cusps, where the speed has no branch but a factor.
+/// The mean of a root's distances from -1 and 1 in the piece's own parameter.
 #[inline]
-fn ellipse([x, y]: Complex, middle: f64, half: f64) -> f64 {
-    let w = [(x - middle) / half, y / half];
+fn foci_distance([x, y]: Complex, middle: f64, inverse_half: f64) -> f64 {
+    let w = [(x - middle) * inverse_half, y * inverse_half];
     if !(w[0].is_finite() && w[1].is_finite()) {
         return f64::INFINITY;
     }
-    // The sum of distances from the foci is rho + 1 / rho.
-    let sum = 0.5 * (size([w[0] - 1.0, w[1]]) + size([w[0] + 1.0, w[1]]));
-    let sum = sum * (1.0 - 1e-9);
+    0.5 * (size([w[0] - 1.0, w[1]]) + size([w[0] + 1.0, w[1]]))
+}
+
+/// The sum of half-axes of the ellipse about -1 and 1 whose points have that mean distance, a little less for rounding;
+/// at most 8, which is as good as infinite.
+#[inline]
+fn ellipse(distance: f64) -> f64 {
+    // It is the mean of rho and 1 / rho.
+    let sum = distance.min(4.0625) * (1.0 - 1e-9);
     sum + (sum * sum - 1.0).max(0.0).sqrt()
 }
 
