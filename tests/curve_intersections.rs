@@ -9,9 +9,9 @@ mod roots;
 
 use num_bigint::BigInt;
 use num_traits::Signed;
-use ogee::curve::{Bernstein, Contact, Cubic, Meeting, intersect};
+use ogee::curve::{AnyBezier, Bernstein, Contact, Cubic, Meeting, intersect, self_intersections};
 use ogee::math::{Vec2, sin_cos};
-use roots::{BITS, Curve, eliminated, integers, monomials};
+use roots::{BITS, Curve, eliminated, integers, monomials, own_eliminated};
 
 /// A generator of numbers (Steele, Lea, Flood, SplitMix64, 2014).
 struct Random(u64);
@@ -221,6 +221,56 @@ fn overlaps_are_wrong(a: &Cubic<Vec2>, b: &Cubic<Vec2>, found: &[Meeting]) -> Op
         let wrong = if inside { distance > 1e-12 * 64.0 } else { distance < 1e-12 && !near_end };
         wrong.then(|| format!("at {s}: {distance} from the other, found {found:?}"))
     })
+}
+
+/// What is wrong with the meetings of a curve with itself, by elimination.
+fn own_meetings_are_wrong(points: &[Vec2]) -> Option<String> {
+    let numbers: Vec<f64> = points.iter().flat_map(|p| [p.x, p.y]).collect();
+    let whole = integers(&numbers).0;
+    let axis = |axis: usize| -> Vec<BigInt> { whole.iter().skip(axis).step_by(2).cloned().collect() };
+    let exact: Curve = [0, 1].map(|k| monomials(&axis(k)));
+    let polynomial = own_eliminated(&exact);
+    if polynomial.is_empty() {
+        return None;
+    }
+    let places = roots::roots(&polynomial);
+    let limit = (whole.iter().map(|x| x.abs()).max().unwrap() + 1) << (BITS - 120);
+    let mut expected = Vec::new();
+    for (i, s) in places.iter().enumerate() {
+        for t in &places[i + 1..] {
+            let off = |k: usize| roots::value(&exact[k], &s.low) - roots::value(&exact[k], &t.low);
+            if (0..2).all(|k| off(k).abs() < limit) {
+                expected.push((s.to_f64(), t.to_f64()));
+            }
+        }
+    }
+    let found = self_intersections(&AnyBezier::new(points.to_vec()).unwrap()).unwrap();
+    let mut got: Vec<(f64, f64)> = found.iter().map(|m| (m.first[0], m.second[0])).collect();
+    for &(s, t) in &expected {
+        // Parameters of loops that are all but cusps are known to fewer digits.
+        let place = got.iter().position(|g| (g.0 - s).abs().max((g.1 - t).abs()) < 1e-10);
+        let Some(place) = place else { return Some(format!("missed {s}, {t} among {found:?}")) };
+        got.swap_remove(place);
+    }
+    (!got.is_empty()).then(|| format!("{got:?} are none of {expected:?}"))
+}
+
+#[test]
+fn curves_meet_themselves_as_elimination_says() {
+    let (count, seed) = (setting("OGEE_CURVES_COUNT", 40), setting("OGEE_CURVES_SEED", 1));
+    let mut failed = 0;
+    for seed in seed..seed + count {
+        let mut random = Random(seed);
+        let (degree, coarse) = (3 + random.below(3), random.below(2) == 0);
+        let mut coordinate = || if coarse { random.below(5) as f64 } else { random.unit() };
+        let points: Vec<Vec2> = (0..=degree).map(|_| Vec2::new(coordinate(), coordinate())).collect();
+        if let Some(wrong) = own_meetings_are_wrong(&points) {
+            failed += 1;
+            println!("self, OGEE_CURVES_SEED={seed}: {wrong}\n  {points:?}");
+        }
+    }
+    println!("self: {count} curves from seed {seed}, {failed} wrong");
+    assert_eq!(failed, 0);
 }
 
 fn setting(name: &str, otherwise: u64) -> u64 {

@@ -267,6 +267,29 @@ pub(crate) fn eliminated(along: &Curve, curve: &Curve) -> Polynomial {
     interpolated(&values)
 }
 
+/// A polynomial whose roots are the parameters at which a curve is where it is at another one too, and those of its cusps:
+/// the resultant of both coordinates' divided differences, turned as above.
+pub(crate) fn own_eliminated(curve: &Curve) -> Polynomial {
+    let n = curve.iter().map(|axis| trimmed(axis.clone()).len()).max().unwrap_or(0).saturating_sub(1);
+    if n < 2 {
+        return vec![BigInt::one()];
+    }
+    let of = |f: i32| curve[0].iter().zip(&curve[1]).map(|(x, y)| x * f + y).collect::<Vec<_>>();
+    let turned = [of(2), of(1)];
+    let values: Vec<BigInt> = (0..=(n - 1) * (n - 1))
+        .map(|s| {
+            let rows = [0, 1].map(|axis: usize| {
+                let coefficient = |k: usize| {
+                    turned[axis][k + 1..=n].iter().rev().fold(BigInt::zero(), |sum, c| sum * s + c)
+                };
+                (0..n).map(coefficient).collect::<Vec<_>>()
+            });
+            resultant(&rows[0], &rows[1])
+        })
+        .collect();
+    interpolated(&values)
+}
+
 /// Lagrange's polynomial through values at 0, 1, 2 and so on, times a constant.
 fn interpolated(values: &[BigInt]) -> Polynomial {
     let count = values.len();
