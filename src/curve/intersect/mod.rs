@@ -97,8 +97,8 @@ impl From<Pair> for Meeting {
 
 /// Pairs of parts that are looked at; a crossing takes about ten, a touch some hundred.
 const BUDGET: usize = 20_000;
-/// The same where what is left open can be decided by elimination.
-const SHORT_BUDGET: usize = 1_000;
+/// The same where what is left open can be decided by elimination, which takes about as long as so many pairs.
+const SHORT_BUDGET: usize = 4_000;
 
 /// Where two curves meet, ascending along the first.
 ///
