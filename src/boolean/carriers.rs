@@ -19,6 +19,8 @@ pub(super) struct Carrier {
     pub(super) overlay: Overlay,
     /// For each cell, a triangle of the first operand that covers it.
     pub(super) births: Vec<Option<Birth>>,
+    /// Points inside of cells at which something else touches them.
+    pub(super) marks: Vec<PointId>,
     /// Number of the first cell of this carrier among all.
     pub(super) first_cell: u32,
 }
@@ -157,8 +159,19 @@ impl Draft {
         let Draft { plane, chart, lines, world_lines, segments, marks, .. } = self;
         let overlay = overlay(&chart, &mut scene.world.places.points, &lines, &segments, &marks);
         let births = find_births(scene, &chart, &overlay);
-        Carrier { plane, chart, lines, world_lines, overlay, births, first_cell: 0 }
+        let marks = off_edges(marks, &overlay);
+        Carrier { plane, chart, lines, world_lines, overlay, births, marks, first_cell: 0 }
     }
+}
+
+/// The points that are no ends of edges.
+fn off_edges(points: Vec<PointId>, overlay: &Overlay) -> Vec<PointId> {
+    if points.is_empty() {
+        return points;
+    }
+    let mut ends: Vec<PointId> = overlay.edges.iter().flat_map(|edge| edge.ends).collect();
+    ends.sort_unstable();
+    points.into_iter().filter(|point| ends.binary_search(point).is_err()).collect()
 }
 
 /// For each covered cell, the least triangle of its first operand among those whose sides bound the part of the plane

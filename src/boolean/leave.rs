@@ -1,29 +1,95 @@
 //! From exact surface to solid: vertices numbered, positions rounded, once.
 
-use super::Combined;
+use super::Birth;
 use super::body::Body;
-use super::world::{NONE, World};
+use super::world::{Lookup, NONE, World};
 use crate::math::Vec3;
-use crate::mesh::{Mesh, Solid, fans};
-use crate::polygon::exact::{Plane, PointId};
+use crate::mesh::{Mesh, fans};
+use crate::polygon::exact::{Origin, Plane, PointId};
+
+/// A result with rounded positions.
+pub(super) struct Rounded {
+    pub(super) mesh: Mesh,
+    pub(super) birth: Vec<Birth>,
+    /// Whether it is known not to cross itself.
+    pub(super) embedded: bool,
+    /// What it was rounded from.
+    pub(super) origin: Option<Origin>,
+    /// Bound on the distance of a vertex from its exact place.
+    pub(super) movement: f64,
+}
 
 impl World<'_> {
-    /// The solid that a body stands for.
-    pub(super) fn solid_of(mut self, body: Body) -> Combined {
+    /// The surface that a body stands for.
+    pub(super) fn round(mut self, body: Body) -> Rounded {
         let mut surface = Numbered::new(body);
         let is_parted = surface.part_double_edges(&mut self);
         let Numbered { body, vertices, count } = surface;
-        let mut positions = vec![Vec3::ZERO; count as usize];
+        let mut points = vec![PointId(NONE); count as usize];
         for (&point, &vertex) in body.corners.iter().flatten().zip(&vertices) {
-            positions[vertex as usize] = self.places.position(point);
+            points[vertex as usize] = point;
         }
-        let is_given = |&point: &PointId| self.places.is_given(point);
+        let positions: Vec<Vec3> = points.iter().map(|&point| self.places.position(point)).collect();
         let embedded = body.embedded
             && !is_parted
             && self.places.is_exact()
-            && body.corners.iter().flatten().all(is_given);
+            && points.iter().all(|&point| self.places.is_given(point));
+        let exact = body.embedded && !is_parted;
+        let origin = if embedded { None } else { self.origin_of(&body, &points, exact) };
+        let movement = origin.as_ref().map_or(0.0, |origin| self.movement(origin, &positions));
         let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
-        Combined { solid: Solid::assume(mesh, embedded), birth: body.births }
+        Rounded { mesh, birth: body.births, embedded, origin, movement }
+    }
+
+    /// Bound on the distance of positions from where the vertices are: half an ulp in each coordinate of what was rounded,
+    /// half a unit of the lattice of what was given.
+    fn movement(&self, origin: &Origin, positions: &[Vec3]) -> f64 {
+        let rounding = |vertex: u32| (0.5 * f64::EPSILON * positions[vertex as usize]).length();
+        let rounded = origin.fractions.iter().map(|&(vertex, _)| rounding(vertex)).fold(0.0, f64::max);
+        let unit = self.places.lattice().to_model(Vec3::splat(0.5)).length();
+        if origin.sites.is_empty() { rounded } else { rounded.max(unit) }
+    }
+
+    /// What the positions of a body with its vertices at some points do not say; `None` when they say everything.
+    fn origin_of(&self, body: &Body, points: &[PointId], embedded: bool) -> Option<Origin> {
+        let mut origin = Origin::on(self.places.lattice(), embedded);
+        for (vertex, &point) in (0..).zip(points) {
+            if let Some(place) = self.places.hidden_place(point) {
+                origin.add(vertex, place);
+            }
+        }
+        let is_fraction = |point: &PointId| self.points().as_site(*point).is_none();
+        let mut planes = Numbers::default();
+        for (t, corners) in (0..).zip(&body.corners) {
+            if corners.iter().any(is_fraction) {
+                let facing = body.facings[t as usize];
+                origin.faces.push((t, planes.number(facing.plane()), facing.is_with_plane()));
+            }
+        }
+        origin.planes = planes.known.iter().map(|&index| *self.plane(index)).collect();
+        let mut lines = Numbers::default();
+        for (half_edge, &line) in (0..).zip(&body.lines).filter(|(_, line)| **line != NONE) {
+            origin.sides.push((half_edge, lines.number(line)));
+        }
+        origin.lines = lines.known.iter().map(|&index| self.lines[index as usize]).collect();
+        let says_something = !(origin.sites.is_empty() && origin.fractions.is_empty());
+        says_something.then_some(origin)
+    }
+}
+
+/// New numbers for some indices, in the order in which they come.
+#[derive(Default)]
+struct Numbers {
+    of: Lookup<u32, u32>,
+    known: Vec<u32>,
+}
+
+impl Numbers {
+    fn number(&mut self, index: u32) -> u32 {
+        *self.of.entry(index).or_insert_with(|| {
+            self.known.push(index);
+            self.known.len() as u32 - 1
+        })
     }
 }
 

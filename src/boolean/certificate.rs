@@ -1,0 +1,136 @@
+//! What is known of a result after rounding, and what was done about it.
+
+use super::leave::Rounded;
+use super::repair::Patient;
+use super::tree::Tree;
+use super::world::Labels;
+use super::{Birth, Combined, Operand, Steps, arrive, strategy};
+use crate::mesh::{Mesh, Solid, crossing_pairs};
+
+/// What a result is known to be. That it is closed and two-manifold is part of what a [`Solid`] is.
+///
+/// The exact result never passes through itself. Its positions rounded to doubles may, where features are smaller than an
+/// ulp; all triangles that rounding moved are therefore looked at, by exact signs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Certificate {
+    /// Number of triangles with an altitude below four ulps of the largest coordinate.
+    pub slivers: usize,
+    /// Pairs of triangles that rounding had made to pass through each other.
+    pub crossings_found: usize,
+    /// How many such pairs are left. Where not all could be repaired nothing was.
+    pub crossings_left: usize,
+    /// Bound on the distance from the exact surface to the rounded one, in model units: for a vertex half an ulp in each
+    /// coordinate, more where crossings were repaired.
+    pub movement: f64,
+}
+
+impl Certificate {
+    /// What is known of two results together.
+    #[must_use]
+    pub fn and(self, other: Certificate) -> Certificate {
+        Certificate {
+            slivers: self.slivers + other.slivers,
+            crossings_found: self.crossings_found + other.crossings_found,
+            crossings_left: self.crossings_left + other.crossings_left,
+            movement: self.movement.max(other.movement),
+        }
+    }
+}
+
+/// A triangle thinner than this many ulps of the largest coordinate is a sliver.
+const SLIVER: f64 = 4.0;
+
+/// Rounds of repair. Each takes out features twice as large as the one before.
+const ROUNDS: i32 = 12;
+
+/// Makes a result of a rounded surface: looks for crossings and repairs them.
+pub(super) fn certify(rounded: Rounded, operands: &[Operand<'_>]) -> Combined {
+    let Rounded { mesh, birth, embedded, origin, movement } = rounded;
+    let suspects = origin.as_ref().map_or_else(Vec::new, |origin| moved_triangles(&mesh, origin));
+    let found = crossing_pairs(&mesh, &suspects);
+    let ulp = f64::EPSILON * mesh.positions.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let mut certificate =
+        Certificate { slivers: 0, crossings_found: found.len(), crossings_left: found.len(), movement };
+    let repaired = if found.is_empty() { None } else { repair(&mesh, &birth, &found, ulp, operands) };
+    let (solid, birth) = match repaired {
+        Some(repaired) => {
+            certificate.crossings_left = 0;
+            certificate.movement += repaired.movement;
+            (Solid::assume(repaired.mesh, false), repaired.birth)
+        }
+        None => (Solid::assume(mesh, embedded).rounded_from(origin), birth),
+    };
+    certificate.slivers = slivers(solid.mesh(), SLIVER * ulp);
+    Combined { solid, birth, certificate }
+}
+
+/// Triangles with a vertex that is not where it is exactly, in order.
+fn moved_triangles(mesh: &Mesh, origin: &crate::polygon::exact::Origin) -> Vec<u32> {
+    let mut is_moved = vec![false; mesh.positions.len()];
+    origin.sites.iter().for_each(|&(vertex, _)| is_moved[vertex as usize] = true);
+    origin.fractions.iter().for_each(|&(vertex, _)| is_moved[vertex as usize] = true);
+    let triangles = (0_u32..).zip(&mesh.triangles);
+    triangles.filter(|(_, corners)| corners.iter().any(|&v| is_moved[v as usize])).map(|(t, _)| t).collect()
+}
+
+/// Number of triangles with an altitude below `thickness`.
+fn slivers(mesh: &Mesh, thickness: f64) -> usize {
+    let is_sliver = |&t: &usize| {
+        let [a, b, c] = mesh.corners(t);
+        let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+        (b - a).cross(c - a).length_squared() < thickness * thickness * longest
+    };
+    (0..mesh.triangles.len()).filter(is_sliver).count()
+}
+
+/// A surface without crossings.
+struct Repaired {
+    mesh: Mesh,
+    birth: Vec<Birth>,
+    movement: f64,
+}
+
+/// Takes out what is thin around crossings, thicker things every time, until there are none. Where nothing thin is left to
+/// take out, the surface is cut along its crossings as an operand would be. `None` when crossings stay.
+fn repair(
+    mesh: &Mesh,
+    birth: &[Birth],
+    found: &[[u32; 2]],
+    ulp: f64,
+    operands: &[Operand<'_>],
+) -> Option<Repaired> {
+    let mut state = Repaired { mesh: mesh.clone(), birth: birth.to_vec(), movement: 0.0 };
+    let mut crossings = found.to_vec();
+    for round in 0..ROUNDS {
+        let mut patient = Patient::new(state.mesh, state.birth);
+        let around: Vec<u32> = crossings.iter().flatten().copied().collect();
+        let taken = patient.thin_out(&around, ulp * f64::from(round).exp2());
+        let moved = patient.movement;
+        let (mesh, birth) = patient.discharged();
+        state = Repaired { mesh, birth, movement: state.movement + moved };
+        if taken == 0 {
+            state = rearranged(&state, operands)?;
+        }
+        let all: Vec<u32> = (0..state.mesh.triangles.len() as u32).collect();
+        crossings = crossing_pairs(&state.mesh, &all);
+        if crossings.is_empty() {
+            return Some(state);
+        }
+    }
+    None
+}
+
+/// The surface as an operand that crosses itself, made sound and rounded again.
+fn rearranged(state: &Repaired, operands: &[Operand<'_>]) -> Option<Repaired> {
+    let label = |birth: &Birth| match operands[birth.operand as usize].labels {
+        Labels::One(label) => label,
+        Labels::Each(labels) => labels[birth.triangle as usize],
+    };
+    let labels: Vec<u32> = state.birth.iter().map(label).collect();
+    let operand = Operand::from(&state.mesh).with_materials(&labels);
+    let (world, bodies) = arrive::enter(&[operand], 0.0).ok()?;
+    let (world, body) = strategy::evaluate(world, bodies, &Tree::Leaf(0), Steps::Once);
+    let Rounded { mesh, birth, movement, .. } = world.round(body);
+    let birth = birth.into_iter().map(|birth| state.birth[birth.triangle as usize]).collect();
+    Some(Repaired { mesh, birth, movement: state.movement + movement })
+}
