@@ -115,9 +115,9 @@ impl<P: Blend> Search<'_, P> {
             let (p, v, w) = point(self.q, t);
             let slope = p.inner(v);
             if slope < 0.0 {
-                a = t
+                a = t;
             } else {
-                b = t
+                b = t;
             }
             let step = slope / (v.inner(v) + p.inner(w));
             let next = t - step;

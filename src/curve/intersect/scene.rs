@@ -32,7 +32,7 @@ impl<S: Store> Scene<S> {
         let raw = [a, b];
         let largest = raw
             .iter()
-            .flat_map(|points| points.as_ref())
+            .flat_map(AsRef::as_ref)
             .fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
         // A difference of huge numbers overflows, a quarter of subnormal ones loses digits.
         let quarter = if largest > 1e300 { 0.25 } else { 1.0 };
