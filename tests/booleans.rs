@@ -2,7 +2,7 @@
 
 use ogee::boolean::{self, BooleanError, Combined, Op, Operand, Options, Tree, evaluate, evaluate_with};
 use ogee::math::{Quat, Vec3};
-use ogee::mesh::{Mesh, Solid, cuboid, sphere};
+use ogee::mesh::{Mesh, Solid, crossing_pairs, cuboid, sphere};
 
 fn cube(corner: Vec3, size: f64) -> Solid {
     cuboid(corner, corner + Vec3::splat(size))
@@ -165,7 +165,7 @@ fn the_order_of_operands_changes_no_bit() {
 fn every_triangle_lies_on_the_one_it_came_from() {
     let [a, b] = some_pair();
     for op in [Op::Union, Op::Intersection, Op::Difference, Op::SymmetricDifference] {
-        let Combined { solid, birth } = evaluate(&Tree::flat(op, 2), &[&a, &b]).unwrap();
+        let Combined { solid, birth, .. } = evaluate(&Tree::flat(op, 2), &[&a, &b]).unwrap();
         assert_eq!(solid.triangles().len(), birth.len());
         for (t, birth) in birth.iter().enumerate() {
             let source = [&a, &b][birth.operand as usize];
@@ -191,7 +191,7 @@ fn labels_keep_coplanar_faces_apart() {
     let plain = evaluate(&tree, &[&a, &b]).unwrap();
     assert_eq!(plain.solid.triangles().len(), 12);
     let labelled = [Operand::from(&a), Operand::from(&b).with_material(1)];
-    let Combined { solid, birth } = evaluate(&tree, &labelled).unwrap();
+    let Combined { solid, birth, .. } = evaluate(&tree, &labelled).unwrap();
     assert_eq!((solid.triangles().len(), solid.positions().len()), (20, 12));
     for (t, birth) in birth.iter().enumerate() {
         let middle = solid.mesh().corners(t).iter().sum::<Vec3>() / 3.0;
@@ -248,4 +248,38 @@ fn a_grid_joins_what_misses_by_less() {
             .len(),
         12
     );
+}
+
+/// A ring on a face, both part of one operand: what the ring leaves of the face in its middle has no side of its own.
+#[test]
+fn an_operand_may_lie_on_itself() {
+    let block = cuboid(Vec3::ZERO, Vec3::new(4.0, 4.0, 2.0)).into_mesh();
+    let outer = cuboid(Vec3::new(1.0, 1.0, 1.0), Vec3::new(3.0, 3.0, 2.0));
+    let inner = cuboid(Vec3::new(1.5, 1.5, 0.5), Vec3::new(2.5, 2.5, 2.5));
+    let ring = boolean::difference(&outer, &inner).solid.into_mesh();
+    let offset = block.positions.len() as u32;
+    let mut both = block;
+    both.positions.extend(ring.positions);
+    both.triangles.extend(ring.triangles.iter().map(|t| t.map(|v| v + offset)));
+    let whole = evaluate(&Tree::Leaf(0), &[&both]).expect("closed").solid;
+    assert_eq!((whole.triangles().len(), whole.measures().volume), (12, 32.0));
+}
+
+/// Cubes a billionth of a radian apart have features far below an ulp; none of them may end up folded.
+#[test]
+fn what_rounding_folds_is_repaired() {
+    let axis = Vec3::new(1.0, 2.0, 3.0).normalize();
+    let cubes: Vec<Mesh> = (0..30)
+        .map(|k| {
+            let turn = Quat::from_axis_angle(axis, 1e-9 * f64::from(k));
+            moved(&cube(Vec3::splat(-0.5), 1.0), turn, Vec3::ZERO)
+        })
+        .collect();
+    let Combined { solid, certificate, .. } =
+        evaluate(&Tree::flat(Op::Union, 30), &cubes.iter().collect::<Vec<_>>()).expect("cubes");
+    assert!(certificate.crossings_found > 0 && certificate.crossings_left == 0, "{certificate:?}");
+    assert!(certificate.movement < 1e-14, "{certificate:?}");
+    let all: Vec<u32> = (0..solid.triangles().len() as u32).collect();
+    assert_eq!(crossing_pairs(solid.mesh(), &all), Vec::<[u32; 2]>::new());
+    assert_eq!(solid.measures().genus, Some(0));
 }

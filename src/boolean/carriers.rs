@@ -199,16 +199,22 @@ fn find_births(scene: &Scene<'_>, chart: &Chart, overlay: &Overlay) -> Vec<Optio
         }
     }
     let mut births: Vec<Option<Birth>> = vec![None; sheets.len()];
+    let mut beside: Vec<Option<Birth>> = vec![None; sheets.len()];
     for edge in &overlay.edges {
         for jump in overlay.jumps_of(edge) {
-            let cell = if lies_above(scene, chart, jump) { edge.above } else { edge.below };
-            if let Some(sheet) = sheet(cell, jump.operand) {
-                let birth = scene.births[jump.face as usize];
-                let known = &mut births[sheets.find(sheet) as usize];
-                *known = Some(known.map_or(birth, |known| known.min(birth)));
+            let birth = scene.births[jump.face as usize];
+            let above = lies_above(scene, chart, jump);
+            for (cell, is_own) in [(edge.above, above), (edge.below, !above)] {
+                if let Some(sheet) = sheet(cell, jump.operand) {
+                    let known = if is_own { &mut births } else { &mut beside };
+                    let known = &mut known[sheets.find(sheet) as usize];
+                    *known = Some(known.map_or(birth, |known| known.min(birth)));
+                }
             }
         }
     }
+    // An operand that overlaps itself may leave a sheet of which every side belongs to a triangle beside it.
+    births.iter_mut().zip(beside).for_each(|(birth, beside)| *birth = birth.or(beside));
     let first_of = |cell: usize| (first_sheet[cell] < first_sheet[cell + 1]).then(|| first_sheet[cell]);
     let mut birth_of = |cell: usize| births[sheets.find(first_of(cell)?) as usize];
     (0..overlay.coverage.len()).map(&mut birth_of).collect()

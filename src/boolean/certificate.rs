@@ -40,8 +40,17 @@ impl Certificate {
 /// A triangle thinner than this many ulps of the largest coordinate is a sliver.
 const SLIVER: f64 = 4.0;
 
-/// Rounds of repair. Each takes out features twice as large as the one before.
-const ROUNDS: i32 = 12;
+/// Rounds of repair. Each takes out features twice as large as the one before, up to a limit.
+const ROUNDS: i32 = 20;
+
+/// Rounds without fewer crossings after which another way is tried.
+const PATIENCE: i32 = 4;
+
+/// Crossings beyond which that way is not taken: sheets that run through each other all over have no end of them.
+const MOST_TO_CUT: usize = 256;
+
+/// How often the size of features to take out is doubled, at most: what is a thousand times as large as the rounding stays.
+const MOST_DOUBLINGS: i32 = 10;
 
 /// Makes a result of a rounded surface: looks for crossings and repairs them.
 pub(super) fn certify(rounded: Rounded, operands: &[Operand<'_>]) -> Combined {
@@ -90,8 +99,16 @@ struct Repaired {
     movement: f64,
 }
 
+impl Repaired {
+    fn of(patient: Patient) -> Repaired {
+        let (mesh, birth, movement) = patient.discharged();
+        Repaired { mesh, birth, movement }
+    }
+}
+
 /// Takes out what is thin around crossings, thicker things every time, until there are none. Where nothing thin is left to
-/// take out, the surface is cut along its crossings as an operand would be. `None` when crossings stay.
+/// take out, or that does not help, the surface is cut along its crossings as an operand would be. `None` when crossings
+/// stay.
 fn repair(
     mesh: &Mesh,
     birth: &[Birth],
@@ -99,22 +116,26 @@ fn repair(
     ulp: f64,
     operands: &[Operand<'_>],
 ) -> Option<Repaired> {
-    let mut state = Repaired { mesh: mesh.clone(), birth: birth.to_vec(), movement: 0.0 };
+    let mut patient = Patient::new(mesh.clone(), birth.to_vec(), 0.0);
     let mut crossings = found.to_vec();
+    let (mut fewest, mut in_vain) = (found.len(), 0);
     for round in 0..ROUNDS {
-        let mut patient = Patient::new(state.mesh, state.birth);
-        let around: Vec<u32> = crossings.iter().flatten().copied().collect();
-        let taken = patient.thin_out(&around, ulp * f64::from(round).exp2());
-        let moved = patient.movement;
-        let (mesh, birth) = patient.discharged();
-        state = Repaired { mesh, birth, movement: state.movement + moved };
-        if taken == 0 {
-            state = rearranged(&state, operands)?;
+        let taken = patient.thin_out(&crossings, ulp * f64::from(round.min(MOST_DOUBLINGS)).exp2());
+        crossings = patient.crossings(&crossings);
+        in_vain = if crossings.len() < fewest { 0 } else { in_vain + 1 };
+        fewest = fewest.min(crossings.len());
+        if !crossings.is_empty() && (taken == 0 || in_vain == PATIENCE) {
+            if crossings.len() > MOST_TO_CUT {
+                return None;
+            }
+            let Repaired { mesh, birth, movement } = rearranged(&Repaired::of(patient), operands)?;
+            let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+            crossings = crossing_pairs(&mesh, &all);
+            patient = Patient::new(mesh, birth, movement);
+            in_vain = 0;
         }
-        let all: Vec<u32> = (0..state.mesh.triangles.len() as u32).collect();
-        crossings = crossing_pairs(&state.mesh, &all);
         if crossings.is_empty() {
-            return Some(state);
+            return Some(Repaired::of(patient));
         }
     }
     None

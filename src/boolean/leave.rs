@@ -120,16 +120,16 @@ impl Numbered {
     }
 
     /// Parts edges, but none of a triangle that was cut already: its half-edges have moved.
-    fn part(&mut self, world: &mut World<'_>, double: &[u32]) {
+    fn part(&mut self, world: &mut World<'_>, double: &[[u32; 2]]) {
         let mut is_cut = vec![false; self.body.len()];
-        for &half_edge in double {
+        for &[beside, half_edge] in double {
             let twin = self.body.twins[half_edge as usize];
             let triangles = [half_edge as usize / 3, twin as usize / 3];
             if triangles.iter().any(|&t| is_cut[t]) {
                 continue;
             }
             triangles.into_iter().for_each(|t| is_cut[t] = true);
-            let on_the_way = self.point_on(world, half_edge);
+            let on_the_way = self.point_on(world, half_edge, beside);
             let far = self.split_side(half_edge, on_the_way);
             let other_far = self.split_side(twin, on_the_way);
             self.count += 1;
@@ -140,20 +140,23 @@ impl Numbered {
         }
     }
 
-    /// One half-edge of each edge between vertices that an edge before it joins too.
-    fn double_edges(&self) -> Vec<u32> {
+    /// One half-edge of each edge between vertices that an edge before it joins too, behind one of that.
+    fn double_edges(&self) -> Vec<[u32; 2]> {
         let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
         let mut edges: Vec<(u32, u32, u32)> = (0..self.vertices.len())
             .map(|h| (self.vertices[h], self.vertices[next(h)], h as u32))
             .filter(|(from, to, _)| from < to)
             .collect();
         edges.sort_unstable();
-        edges.windows(2).filter(|e| (e[0].0, e[0].1) == (e[1].0, e[1].1)).map(|e| e[1].2).collect()
+        edges.windows(2).filter(|e| (e[0].0, e[0].1) == (e[1].0, e[1].1)).map(|e| [e[0].2, e[1].2]).collect()
     }
 
     /// A point on an edge, where a plane of lattice points crosses it near the middle. Where the edge is too short for
     /// one, its start.
-    fn point_on(&self, world: &mut World<'_>, half_edge: u32) -> PointId {
+    ///
+    /// An edge inside a face has no line of its own; it lies where the face's plane crosses one of those beside the other
+    /// edge between the same points.
+    fn point_on(&self, world: &mut World<'_>, half_edge: u32, beside: u32) -> PointId {
         let corners = self.body.corners[half_edge as usize / 3];
         let [from, to] = [0, 1].map(|i| corners[(half_edge as usize + i) % 3]);
         let [a, b] = [from, to].map(|p| world.points().rounded(p));
@@ -163,14 +166,19 @@ impl Numbered {
         if across.side(world.points(), from) * across.side(world.points(), to) >= 0 {
             return from;
         }
-        match self.body.lines.get(half_edge as usize) {
-            None | Some(&NONE) => world.places.points.crossing(from, to, &across),
-            Some(&line) => {
-                let face = self.body.facings[half_edge as usize / 3].plane();
-                let (face, line) = (*world.plane(face), world.lines[line as usize]);
-                world.places.points.meeting(&face, &line, &across).expect("the plane crosses the edge")
-            }
+        if [from, to].iter().all(|&end| world.points().as_site(end).is_some()) {
+            return world.places.points.crossing(from, to, &across);
         }
+        let plane_of = |half_edge: u32| *world.plane(self.body.facings[half_edge as usize / 3].plane());
+        let face = plane_of(half_edge);
+        let lines: Vec<Plane> = match self.body.lines[half_edge as usize] {
+            NONE => [beside, self.body.twins[beside as usize], self.body.twins[half_edge as usize]]
+                .map(plane_of)
+                .into(),
+            line => vec![world.lines[line as usize]],
+        };
+        let mut points = lines.iter().filter_map(|line| world.places.points.meeting(&face, line, &across));
+        points.next().expect("two faces in different planes meet along the edge")
     }
 
     /// Cuts the triangle of a half-edge in two at a point on it. The half-edge keeps its first half; the other half, which

@@ -6,31 +6,40 @@
 //! what is connected to what.
 
 use super::Birth;
-use crate::math::Vec3;
-use crate::mesh::{Mesh, Topology};
+use crate::mesh::{Mesh, Topology, crossing_pairs};
 
 /// A closed surface under repair. Half-edge `3 t + i` is side `i` of triangle `t`.
 pub(super) struct Patient {
-    positions: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
+    /// The surface; triangles that were taken out are points.
+    mesh: Mesh,
     births: Vec<Birth>,
     twins: Vec<u32>,
     alive: Vec<bool>,
+    /// Triangles that were changed and not looked at since.
+    changed: Vec<u32>,
     /// Bound on how far the surface was moved.
-    pub(super) movement: f64,
+    movement: f64,
 }
 
 impl Patient {
-    pub(super) fn new(mesh: Mesh, births: Vec<Birth>) -> Patient {
-        let Mesh { positions, triangles } = mesh;
-        let twins = Topology::new(&triangles).twins().to_vec();
-        let alive = vec![true; triangles.len()];
-        Patient { positions, triangles, births, twins, alive, movement: 0.0 }
+    pub(super) fn new(mesh: Mesh, births: Vec<Birth>, movement: f64) -> Patient {
+        let twins = Topology::new(&mesh.triangles).twins().to_vec();
+        let alive = vec![true; mesh.triangles.len()];
+        Patient { mesh, births, twins, alive, changed: Vec::new(), movement }
     }
 
-    /// Takes out triangles thinner than `thickness` that are among some or beside them; tells how many.
-    pub(super) fn thin_out(&mut self, suspects: &[u32], thickness: f64) -> usize {
-        let mut around: Vec<u32> = suspects.iter().flat_map(|&t| self.around(t)).collect();
+    /// The crossings that are left of those there were, and those that changes made.
+    pub(super) fn crossings(&mut self, before: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        let mut suspects: Vec<u32> = before.iter().flatten().copied().collect();
+        suspects.append(&mut self.changed);
+        suspects.sort_unstable();
+        suspects.dedup();
+        crossing_pairs(&self.mesh, &suspects)
+    }
+
+    /// Takes out triangles thinner than `thickness` that cross others, or are beside such; tells how many.
+    pub(super) fn thin_out(&mut self, crossings: &[[u32; 2]], thickness: f64) -> usize {
+        let mut around: Vec<u32> = crossings.iter().flatten().flat_map(|&t| self.around(t)).collect();
         around.sort_unstable();
         around.dedup();
         let mut taken = 0;
@@ -45,23 +54,23 @@ impl Patient {
         taken
     }
 
-    /// The mesh that is left, and where each triangle came from.
-    pub(super) fn discharged(self) -> (Mesh, Vec<Birth>) {
-        let kept = |t: &usize| self.alive[*t];
-        let births = (0..self.triangles.len()).filter(kept).map(|t| self.births[t]).collect();
-        let mut number = vec![u32::MAX; self.positions.len()];
-        let mut positions = Vec::new();
+    /// The surface that is left, where each triangle came from, and a bound on how far it was moved.
+    pub(super) fn discharged(self) -> (Mesh, Vec<Birth>, f64) {
+        let Patient { mesh: Mesh { positions, triangles }, births, alive, movement, .. } = self;
+        let births = births.into_iter().zip(&alive).filter(|(_, alive)| **alive).map(|(birth, _)| birth);
+        let mut number = vec![u32::MAX; positions.len()];
+        let mut kept = Vec::new();
         let mut renumbered = |v: u32| {
             let slot = &mut number[v as usize];
             if *slot == u32::MAX {
-                *slot = positions.len() as u32;
-                positions.push(self.positions[v as usize]);
+                *slot = kept.len() as u32;
+                kept.push(positions[v as usize]);
             }
             *slot
         };
-        let triangles =
-            (0..self.triangles.len()).filter(kept).map(|t| self.triangles[t].map(&mut renumbered)).collect();
-        (Mesh { positions, triangles }, births)
+        let triangles = triangles.into_iter().zip(&alive).filter(|(_, alive)| **alive);
+        let triangles = triangles.map(|(corners, _)| corners.map(&mut renumbered)).collect();
+        (Mesh { positions: kept, triangles }, births.collect(), movement)
     }
 
     /// A triangle and all that share a corner with it.
@@ -81,7 +90,7 @@ impl Patient {
     }
 
     fn origin(&self, half_edge: u32) -> u32 {
-        self.triangles[half_edge as usize / 3][half_edge as usize % 3]
+        self.mesh.triangles[half_edge as usize / 3][half_edge as usize % 3]
     }
 
     fn target(&self, half_edge: u32) -> u32 {
@@ -89,13 +98,13 @@ impl Patient {
     }
 
     fn length(&self, half_edge: u32) -> f64 {
-        self.positions[self.origin(half_edge) as usize]
-            .distance(self.positions[self.target(half_edge) as usize])
+        self.mesh.positions[self.origin(half_edge) as usize]
+            .distance(self.mesh.positions[self.target(half_edge) as usize])
     }
 
     /// Takes out a triangle if it is thin and that can be done.
     fn take_out(&mut self, t: u32, thickness: f64) -> bool {
-        let [a, b, c] = self.triangles[t as usize].map(|v| self.positions[v as usize]);
+        let [a, b, c] = self.mesh.triangles[t as usize].map(|v| self.mesh.positions[v as usize]);
         let mut sides = [3 * t, 3 * t + 1, 3 * t + 2];
         sides.sort_by(|&g, &h| self.length(g).total_cmp(&self.length(h)));
         let longest = self.length(sides[2]);
@@ -122,15 +131,17 @@ impl Patient {
         }
         let (gone, kept) = (self.origin(half_edge), self.target(half_edge));
         for h in self.fan(half_edge) {
-            let corner = &mut self.triangles[h as usize / 3][h as usize % 3];
+            let corner = &mut self.mesh.triangles[h as usize / 3][h as usize % 3];
             debug_assert_eq!(*corner, gone);
             *corner = kept;
+            self.changed.push(h / 3);
         }
         for h in [half_edge, twin] {
             let (x, y) = (self.twins[Topology::next(h) as usize], self.twins[Topology::previous(h) as usize]);
             self.twins[x as usize] = y;
             self.twins[y as usize] = x;
             self.alive[h as usize / 3] = false;
+            self.mesh.triangles[h as usize / 3] = [kept; 3];
         }
         true
     }
@@ -150,8 +161,9 @@ impl Patient {
         let (bc, ca) = (outer(Topology::next(half_edge)), outer(left));
         let (ad, db) = (outer(Topology::next(twin)), outer(right));
         let (t, s) = (half_edge / 3, twin / 3);
-        self.triangles[t as usize] = [c, d, b];
-        self.triangles[s as usize] = [d, c, a];
+        self.changed.extend([t, s]);
+        self.mesh.triangles[t as usize] = [c, d, b];
+        self.mesh.triangles[s as usize] = [d, c, a];
         let pairs = [(3 * t, 3 * s), (3 * t + 1, db), (3 * t + 2, bc), (3 * s + 1, ca), (3 * s + 2, ad)];
         for (x, y) in pairs {
             self.twins[x as usize] = y;

@@ -24,8 +24,9 @@ pub struct Origin {
     pub(crate) sides: Vec<(u32, u32)>,
 }
 
-/// Where a vertex is exactly.
+/// Where a vertex is exactly. It lives for a moment, so its size is no matter.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "a box for each would cost more than the copies do")]
 pub(crate) enum Place {
     Site(Site),
     Fraction(Fraction),
