@@ -131,7 +131,7 @@ fn truth([a, b]: &[Points; 2]) -> Truth {
     }
     let (roots_a, roots_b) = (roots::roots(&on_a), roots::roots(&on_b));
     // Points that are the same to 120 bits.
-    let limit = (whole.iter().map(|x| x.abs()).max().unwrap() + 1) << (BITS - 120);
+    let limit = (whole.iter().map(Signed::abs).max().unwrap() + 1) << (BITS - 120);
     let mut meetings = Vec::new();
     for s in &roots_a {
         for t in &roots_b {
@@ -234,7 +234,7 @@ fn own_meetings_are_wrong(points: &[Vec2]) -> Option<String> {
         return None;
     }
     let places = roots::roots(&polynomial);
-    let limit = (whole.iter().map(|x| x.abs()).max().unwrap() + 1) << (BITS - 120);
+    let limit = (whole.iter().map(Signed::abs).max().unwrap() + 1) << (BITS - 120);
     let mut expected = Vec::new();
     for (i, s) in places.iter().enumerate() {
         for t in &places[i + 1..] {
