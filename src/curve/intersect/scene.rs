@@ -30,10 +30,8 @@ impl<S: Store> Scene<S> {
     #[inline]
     pub(super) fn new(a: S, b: S) -> Scene<S> {
         let raw = [a, b];
-        let largest = raw
-            .iter()
-            .flat_map(AsRef::as_ref)
-            .fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
+        let largest =
+            raw.iter().flat_map(AsRef::as_ref).fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
         // A difference of huge numbers overflows, a quarter of subnormal ones loses digits.
         let quarter = if largest > 1e300 { 0.25 } else { 1.0 };
         let origin = raw[0].as_ref()[0] * quarter;
