@@ -125,11 +125,15 @@ impl Numbered {
         for &[beside, half_edge] in double {
             let twin = self.body.twins[half_edge as usize];
             let triangles = [half_edge as usize / 3, twin as usize / 3];
-            if triangles.iter().any(|&t| is_cut[t]) {
+            // New triangles are parts of cut ones.
+            if triangles.iter().any(|&t| is_cut.get(t) != Some(&false)) {
                 continue;
             }
             triangles.into_iter().for_each(|t| is_cut[t] = true);
             let on_the_way = self.point_on(world, half_edge, beside);
+            for side in [half_edge, twin] {
+                self.name_line(world, side);
+            }
             let far = self.split_side(half_edge, on_the_way);
             let other_far = self.split_side(twin, on_the_way);
             self.count += 1;
@@ -179,6 +183,19 @@ impl Numbered {
         };
         let mut points = lines.iter().filter_map(|line| world.places.points.meeting(&face, line, &across));
         points.next().expect("two faces in different planes meet along the edge")
+    }
+
+    /// Gives a half-edge between lattice points a line, which its halves will need.
+    fn name_line(&mut self, world: &mut World<'_>, half_edge: u32) {
+        let corners = self.body.corners[half_edge as usize / 3];
+        let [from, to] = [0, 1].map(|i| world.points().as_site(corners[(half_edge as usize + i) % 3]));
+        if self.body.lines[half_edge as usize] == NONE
+            && let (Some(from), Some(to)) = (from, to)
+        {
+            let face = world.plane(self.body.facings[half_edge as usize / 3].plane());
+            let line = Plane::along_axis(from, to, face.main_axis()).expect("edges have length");
+            self.body.lines[half_edge as usize] = world.add_line(&line);
+        }
     }
 
     /// Cuts the triangle of a half-edge in two at a point on it. The half-edge keeps its first half; the other half, which
