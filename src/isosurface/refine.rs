@@ -293,10 +293,13 @@ impl<'f> Refinement<'f> {
     fn verdict(&self, t: &Tetrahedron) -> Option<(Patch, bool)> {
         let size = t.size(&self.nodes);
         let last = t.generation == LAST_GENERATION || 0.5 * size < self.sizes.least;
-        if !t.one_sheet && size > self.sizes.search && !last {
+        let crossed = t.is_crossed(&self.nodes);
+        // Where a piece fits, a second sheet is for the proof to find.
+        let search = if crossed { 8.0 * self.sizes.search } else { self.sizes.search };
+        if !t.one_sheet && size > search && !last {
             return None;
         }
-        if !t.is_crossed(&self.nodes) {
+        if !crossed {
             return Some((Patch::Empty, !t.one_sheet));
         }
         let reach = SAMPLED * self.sizes.tolerance;
@@ -319,7 +322,8 @@ impl<'f> Refinement<'f> {
             }
             halves.extend(t.halves(middle));
             self.changed.extend(t.nodes);
-            self.halved |= 1 << t.generation;
+            // Its neighbours may hang now, and so may its halves.
+            self.halved |= 0b11 << t.generation;
         }
         let values = par::map_above(FEW, &new, |&(p, field)| self.field(field).value(p));
         self.nodes.values.extend(values);
