@@ -106,7 +106,7 @@ fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>) -> 
     let prover = Prover { field, tolerance: sizes.tolerance, own: pieces.own(name), around: pieces.around(leaf) };
     let bend = prover.bend(cell);
     let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
-    if prover.zeros_are_near(corners, bend, 0) && prover.own.iter().all(near) {
+    if prover.own.iter().all(near) && prover.zeros_are_near(corners, bend, &prover.around, 0) {
         return Outcome::Proven;
     }
     let size = t.size(&refinement.nodes);
@@ -191,21 +191,30 @@ impl Prover<'_> {
         })
     }
 
-    /// Whether every zero in the tetrahedron has a triangle within the tolerance.
-    fn zeros_are_near(&self, corners: [Vec3; 4], bend: Option<f64>, depth: u32) -> bool {
-        let (linear, slack) = match self.linear(corners, bend) {
-            Some(known) => known,
-            None => ([0.0; 4], f64::INFINITY),
-        };
+    /// Whether every zero in the tetrahedron has one of `triangles`, all that are not too far away, within the
+    /// tolerance.
+    fn zeros_are_near(
+        &self,
+        corners: [Vec3; 4],
+        bend: Option<f64>,
+        triangles: &[[Vec3; 3]],
+        depth: u32,
+    ) -> bool {
+        let (linear, slack) = self.linear(corners, bend).unwrap_or(([0.0; 4], f64::INFINITY));
         if linear.iter().all(|&l| l > slack) || linear.iter().all(|&l| l < -slack) {
-            return true;
-        }
-        if self.is_covered(&slab(corners, linear, slack)) {
             return true;
         }
         let [i, j] = longest_edge(corners);
         let length = corners[i].distance(corners[j]);
+        // A slab as thick as twice the tolerance is within it of nothing flat, unless the tetrahedron is small.
+        let steepness = linear.iter().fold(0.0, |most: f64, l| most.max((l - linear[0]).abs())) / length;
+        let thin = slack <= 2.0 * steepness * self.tolerance || length <= 2.0 * self.tolerance;
         let cell = grown(Aabb::of(corners), self.tolerance);
+        let near: Vec<[Vec3; 3]> =
+            triangles.iter().copied().filter(|&triangle| Aabb::of(triangle).touches(cell)).collect();
+        if thin && self.is_covered(&slab(corners, linear, slack), &near) {
+            return true;
+        }
         if depth > 40 || length < 0.25 * self.tolerance || (bend.is_some() && depth > 12) {
             return false;
         }
@@ -214,7 +223,7 @@ impl Prover<'_> {
         [i, j].into_iter().all(|end| {
             let mut half = corners;
             half[end] = middle;
-            self.zeros_are_near(half, bend, depth + 1)
+            self.zeros_are_near(half, bend, &near, depth + 1)
         })
     }
 
@@ -238,12 +247,12 @@ impl Prover<'_> {
     }
 
     /// Whether one triangle is within the tolerance of all points, and so of all between them.
-    fn is_covered(&self, points: &[Vec3]) -> bool {
+    fn is_covered(&self, points: &[Vec3], near: &[[Vec3; 3]]) -> bool {
         let limit = self.tolerance * self.tolerance;
         let covers = |triangle: &[Vec3; 3]| {
             points.iter().all(|&p| distance_to_triangle(*triangle, p).length_squared() <= limit)
         };
-        self.own.iter().any(covers) || self.around.iter().any(covers)
+        self.own.iter().any(covers) || near.iter().any(covers)
     }
 }
 
