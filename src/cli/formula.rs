@@ -20,7 +20,7 @@ pub(super) struct FormulaArgs {
     #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = corners, allow_hyphen_values = true)]
     bounds: Option<Aabb>,
     /// Greatest distance between mesh and surface, in the model's units
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 }
 

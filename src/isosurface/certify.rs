@@ -22,6 +22,16 @@ pub(super) struct Proof {
     pub(super) proven: Vec<[usize; 2]>,
 }
 
+impl Proof {
+    /// Counts what failed as unproven.
+    pub(super) fn give_up(&mut self, refinement: &Refinement<'_>) {
+        for [generation, index] in std::mem::take(&mut self.failed) {
+            let leaf = &refinement.leaves[generation][index];
+            self.unproven.add(leaf.tetrahedron.bounds(&refinement.nodes));
+        }
+    }
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum Outcome {
     Proven,
@@ -100,9 +110,11 @@ fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>) -> 
     let leaf = &refinement.leaves[name[0]][name[1]];
     let t = &leaf.tetrahedron;
     let corners = t.corners(&refinement.nodes);
-    let field = refinement.field(t.field);
+    let whole = refinement.field(t.field);
     let sizes = refinement.sizes;
     let cell = grown(Aabb::of(corners), sizes.tolerance);
+    let pruned = whole.within(cell);
+    let field = pruned.as_deref().unwrap_or(whole);
     let prover = Prover { field, tolerance: sizes.tolerance, own: pieces.own(name), around: pieces.around(leaf) };
     let bend = prover.bend(cell);
     let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
@@ -158,7 +170,7 @@ impl Prover<'_> {
         if proven {
             return true;
         }
-        if longest <= smallest || depth > 10 || (bend.is_some() && depth > 5) {
+        if longest <= smallest || depth > 10 || (bend.is_some() && depth > 3) {
             return false;
         }
         let (ab, bc, ca) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a));
@@ -215,7 +227,7 @@ impl Prover<'_> {
         if thin && self.is_covered(&slab(corners, linear, slack), &near) {
             return true;
         }
-        if depth > 40 || length < 0.25 * self.tolerance || (bend.is_some() && depth > 12) {
+        if depth > 40 || length < 0.25 * self.tolerance || (bend.is_some() && depth > 9) {
             return false;
         }
         let middle = 0.5 * (corners[i] + corners[j]);

@@ -34,7 +34,7 @@ pub struct Options {
     pub bounds: Option<Aabb>,
     /// Parts of the shape are searched for down to this size where the field proves nothing: what is thinner, and has
     /// ranges too wide to see it, may be missed and is then listed in [`Report::unproven`]. By default the longest
-    /// side of the box over 128.
+    /// side of the box over 128, or over 24 when the field brings no ranges.
     pub search: Option<f64>,
     /// Most tetrahedra held at a time, about 250 bytes each.
     pub most_cells: usize,
@@ -238,18 +238,20 @@ pub fn mesh_with_progress(
         report.certified = Some(options.tolerance);
         return Ok(Meshed { mesh: Solid::default(), report });
     }
-    let sizes = sizes(found.bounds, options)?;
+    let sizes = sizes(found.bounds, field.range(found.bounds).is_some(), options)?;
     let mut refinement = Refinement::new(field, found.bounds, sizes);
     show(Stage::Refine);
     refinement.run()?;
     show(Stage::Extract);
     let mut extracted = extract(&refinement);
     if options.certify && refinement.is_ranged() {
+        let most = PROOF_GROWTH * (refinement.leaf_count() + 1000);
         loop {
             show(Stage::Certify);
-            let proof = certify::prove(&refinement, &extracted);
+            let mut proof = certify::prove(&refinement, &extracted);
             refinement.note_proven(&proof.proven);
-            if proof.failed.is_empty() {
+            if proof.failed.is_empty() || refinement.leaf_count() > most {
+                proof.give_up(&refinement);
                 report.unproven = proof.unproven;
                 break;
             }
@@ -269,7 +271,7 @@ pub fn mesh_with_progress(
 impl Report {
     fn complete(&mut self, refinement: &Refinement<'_>, extracted: &Extracted) {
         self.capped = extracted.mesh.triangles.len() - extracted.caps_from;
-        self.cells = refinement.leaves.iter().map(Vec::len).sum();
+        self.cells = refinement.leaf_count();
         self.visited = refinement.visited;
         self.measured = refinement.measured(extracted);
         self.jumps = refinement.jumps();
@@ -282,6 +284,10 @@ impl Report {
         }
     }
 }
+
+/// What is refined for the proof alone may multiply the cells by no more than this: ranges of some formulas (the cube of
+/// a distance) prove nothing before cells are as small as the tolerance, though the mesh has long been good enough.
+const PROOF_GROWTH: usize = 8;
 
 /// The solid. That it does not cross itself follows from where its vertices are.
 fn closed(extracted: Extracted) -> Result<Solid, IsoError> {
@@ -296,9 +302,9 @@ fn check(name: &'static str, value: f64) -> Result<(), IsoError> {
 /// Tetrahedra are not halved below this part of the largest coordinate: points within them must be told apart.
 const FINEST: f64 = 1.0 / (1_u64 << 28) as f64;
 
-fn sizes(bounds: Aabb, options: &Options) -> Result<Sizes, IsoError> {
+fn sizes(bounds: Aabb, ranged: bool, options: &Options) -> Result<Sizes, IsoError> {
     let (longest, tolerance) = (bounds.size().max_element(), options.tolerance);
-    let search = options.search.unwrap_or(longest / 128.0);
+    let search = options.search.unwrap_or(longest / if ranged { 128.0 } else { 24.0 });
     check("search size", search)?;
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
     let finest = FINEST * largest;

@@ -158,7 +158,7 @@ impl<'f> Refinement<'f> {
         loop {
             while !fresh.is_empty() {
                 self.visited += fresh.len();
-                let cells = self.leaves.iter().map(Vec::len).sum::<usize>() + fresh.len();
+                let cells = self.leaf_count() + fresh.len();
                 if cells > self.sizes.most_cells {
                     return Err(IsoError::TooManyCells { limit: self.sizes.most_cells });
                 }
@@ -330,6 +330,11 @@ impl<'f> Refinement<'f> {
         halves
     }
 
+    /// How many leaves there are.
+    pub(super) fn leaf_count(&self) -> usize {
+        self.leaves.iter().map(Vec::len).sum()
+    }
+
     /// Whether the field brings ranges.
     pub(super) fn is_ranged(&self) -> bool {
         self.ranged
@@ -389,6 +394,9 @@ impl<'f> Refinement<'f> {
 /// Whether the field nowhere falls along one direction, the middle of its slopes: then it changes its sign once at
 /// most. Rounding is forgiven here, since what is proven in the end does not rest on it.
 fn has_one_sheet(slopes: &Slopes) -> bool {
+    if !slopes.gradient.iter().all(|g| g.is_bounded()) {
+        return false;
+    }
     let middle = slopes.gradient.map(|g| g.middle());
     let least = (0..3).map(|k| {
         let g = slopes.gradient[k];
