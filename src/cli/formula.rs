@@ -44,7 +44,9 @@ impl FormulaArgs {
         terminal: &Terminal,
     ) -> Result<Solid, Stop> {
         let Some(tolerance) = self.tolerance else {
-            return Err(Stop::Usage("a formula needs --tolerance, the greatest error of the mesh".to_owned()));
+            return Err(Stop::Usage(
+                "a formula needs --tolerance, the greatest error of the mesh".to_owned(),
+            ));
         };
         let formula = times.stage(terminal, "read", "reading", || {
             let bytes = source.bytes().map_err(|error| Stop::about(source, error))?;

@@ -76,7 +76,8 @@ pub(super) fn tightened(field: &dyn Field, bounds: Aabb, loose: bool) -> Found {
         return found;
     }
     for _ in 0..PASSES {
-        let mut pass = Found { bounds: Aabb::EMPTY, undefined: Places::default(), unsigned: Places::default() };
+        let mut pass =
+            Found { bounds: Aabb::EMPTY, undefined: Places::default(), unsigned: Places::default() };
         search(field, found.bounds, DEPTH, &mut pass);
         let (before, after) = (found.bounds.size(), pass.bounds.size());
         found = Found { bounds: pass.bounds, ..pass };

@@ -75,8 +75,11 @@ fn name_key(generation: u32, index: u32) -> u64 {
 
 impl<'m> Pieces<'m> {
     fn of(refinement: &Refinement<'_>, extracted: &'m Extracted) -> Pieces<'m> {
-        let mut pieces =
-            Pieces { extracted, of_leaf: Map::default(), at_node: vec![Vec::new(); refinement.nodes.places.len()] };
+        let mut pieces = Pieces {
+            extracted,
+            of_leaf: Map::default(),
+            at_node: vec![Vec::new(); refinement.nodes.places.len()],
+        };
         let ends = extracted.origins.iter().skip(1).map(|o| o[2]).chain([extracted.caps_from as u32]);
         for (&[generation, index, first], end) in extracted.origins.iter().zip(ends) {
             pieces.of_leaf.insert(name_key(generation, index), [first, end]);
@@ -115,7 +118,8 @@ fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>) -> 
     let cell = grown(Aabb::of(corners), sizes.tolerance);
     let pruned = whole.within(cell);
     let field = pruned.as_deref().unwrap_or(whole);
-    let prover = Prover { field, tolerance: sizes.tolerance, own: pieces.own(name), around: pieces.around(leaf) };
+    let prover =
+        Prover { field, tolerance: sizes.tolerance, own: pieces.own(name), around: pieces.around(leaf) };
     let bend = prover.bend(cell);
     let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
     if prover.own.iter().all(near) && prover.zeros_are_near(corners, bend, &prover.around, 0) {
@@ -183,7 +187,8 @@ impl Prover<'_> {
 
     /// The direction in which a triangle is moved: along the slope, near a crease between those of its sides.
     fn direction(&self, [a, b, c]: [Vec3; 3], middle: Vec3, smooth: bool) -> Vec3 {
-        let slopes = if smooth { None } else { self.field.slopes(grown(Aabb::of([a, b, c]), self.tolerance)) };
+        let slopes =
+            if smooth { None } else { self.field.slopes(grown(Aabb::of([a, b, c]), self.tolerance)) };
         let gradient = match slopes {
             Some(slopes) if slopes.gradient.iter().all(|g| g.is_bounded()) => {
                 Vec3::from_array(slopes.gradient.map(|g| g.middle()))
@@ -198,7 +203,8 @@ impl Prover<'_> {
         let Some(slopes) = self.field.slopes(Aabb::of(corners)) else { return false };
         corners.iter().all(|&p| {
             let d = p - middle;
-            let change = (0..3).fold(Interval::ZERO, |sum, k| sum + slopes.gradient[k] * Interval::point(d[k]));
+            let change =
+                (0..3).fold(Interval::ZERO, |sum, k| sum + slopes.gradient[k] * Interval::point(d[k]));
             change.magnitude() < value
         })
     }

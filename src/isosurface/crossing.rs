@@ -163,7 +163,9 @@ pub(super) fn cut_face(
     }
     let corners = face.nodes().map(|id| nodes.position(id));
     match crease(&a, &b, corners) {
-        Some(x) if [(x, a), (0.5 * (x + p), a), (0.5 * (x + q), b)].iter().all(|&(x, of)| near(x, of.normal)) => {
+        Some(x)
+            if [(x, a), (0.5 * (x + p), a), (0.5 * (x + q), b)].iter().all(|&(x, of)| near(x, of.normal)) =>
+        {
             FaceCut::Creased(x)
         }
         _ => FaceCut::Torn,

@@ -1,11 +1,11 @@
 //! From leaves to triangles: their patches, and caps where the shape leaves the box.
 
+use super::crossing::{Edge, Face};
 use super::crossing::{FaceCut, lone};
 use super::lattice::Map;
 use super::patch::{Corner, Patch, Ring, place};
 use super::refine::{Leaf, Refinement};
 use super::tetrahedron::FACES;
-use super::crossing::{Edge, Face};
 use crate::math::Vec3;
 use crate::mesh::Mesh;
 

@@ -156,7 +156,10 @@ impl fmt::Display for IsoError {
                 write!(f, "no box up to half side {searched} is proven to hold the shape; give one")
             }
             IsoError::TooFine { tolerance, least } => {
-                write!(f, "a tolerance of {tolerance} is too fine for numbers in this box; the least is {least:e}")
+                write!(
+                    f,
+                    "a tolerance of {tolerance} is too fine for numbers in this box; the least is {least:e}"
+                )
             }
             IsoError::TooManyCells { limit } => {
                 write!(f, "more than {limit} cells are needed; allow more, or a larger tolerance")

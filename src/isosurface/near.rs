@@ -36,7 +36,7 @@ pub(super) fn distance_to_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
         p - (u + along * t)
     };
     let from_edges = edges.map(from_edge);
-    from_edges.into_iter().fold(from_edges[0], |best, d| {
-        if d.length_squared() < best.length_squared() { d } else { best }
-    })
+    from_edges
+        .into_iter()
+        .fold(from_edges[0], |best, d| if d.length_squared() < best.length_squared() { d } else { best })
 }

@@ -181,7 +181,8 @@ fn apex(ring: &Ring, tetrahedron: &Tetrahedron, nodes: &Nodes, cuts: &Cuts) -> O
         0 => middle(ring, cuts),
         count => creases.iter().sum::<Vec3>() / count as f64,
     };
-    let x = base + nearest_to_planes(ring.edges(cuts).map(|cut| (cut.normal, cut.normal.dot(cut.point - base))));
+    let x =
+        base + nearest_to_planes(ring.edges(cuts).map(|cut| (cut.normal, cut.normal.dot(cut.point - base))));
     let [a, b, c, d] = tetrahedron.corners(nodes);
     let frame = Mat3::from_cols(b - a, c - a, d - a);
     let least = |x: Vec3| {

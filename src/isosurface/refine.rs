@@ -1,6 +1,6 @@
 //! Halving tetrahedra until each is free of the surface or has a piece of it that is near enough.
 
-use super::crossing::{Cuts, Edge, EdgeCut, Face, cut_edge, cut_face, lone};
+use super::crossing::{Cuts, Edge, Face, cut_edge, cut_face, lone};
 use super::extract::Extracted;
 use super::lattice::{Lattice, Nodes};
 use super::patch::{Patch, fitting, plainest};
@@ -217,7 +217,12 @@ impl<'f> Refinement<'f> {
     }
 
     fn keep(&mut self, tetrahedron: Tetrahedron, patch: Patch, given_up: bool) {
-        self.leaves[usize::from(tetrahedron.generation)].push(Leaf { tetrahedron, patch, given_up, proven: false });
+        self.leaves[usize::from(tetrahedron.generation)].push(Leaf {
+            tetrahedron,
+            patch,
+            given_up,
+            proven: false,
+        });
     }
 
     /// What ranges and slopes tell.
@@ -237,7 +242,9 @@ impl<'f> Refinement<'f> {
             first.touched = range.is_outside() && range.interval.lo == 0.0;
             first.state = match range {
                 range if range.is_outside() || range.is_undefined() => State::Gone,
-                range if range.is_inside() && !tetrahedron.is_at_border(&self.nodes, &self.lattice) => State::Gone,
+                range if range.is_inside() && !tetrahedron.is_at_border(&self.nodes, &self.lattice) => {
+                    State::Gone
+                }
                 range if range.is_inside() => State::Border,
                 _ => State::Open,
             };
@@ -261,7 +268,9 @@ impl<'f> Refinement<'f> {
         for t in open.iter().filter(|t| t.is_crossed(nodes)) {
             for [i, j] in EDGES {
                 let edge = Edge::between(t.nodes[i], t.nodes[j]);
-                if nodes.is_inside(t.nodes[i]) != nodes.is_inside(t.nodes[j]) && !cuts.edges.contains_key(&edge) {
+                if nodes.is_inside(t.nodes[i]) != nodes.is_inside(t.nodes[j])
+                    && !cuts.edges.contains_key(&edge)
+                {
                     edges.push((edge, t.field));
                 }
             }
@@ -278,9 +287,8 @@ impl<'f> Refinement<'f> {
         faces.dedup_by_key(|(face, _)| *face);
         // Vertices count as points of the surface.
         let accuracy = 1e-4 * self.sizes.tolerance;
-        let found = par::map_above(FEW, &edges, |&(edge, field)| {
-            cut_edge(self.field(field), edge, nodes, accuracy)
-        });
+        let found =
+            par::map_above(FEW, &edges, |&(edge, field)| cut_edge(self.field(field), edge, nodes, accuracy));
         self.cuts.edges.extend(edges.into_iter().map(|(edge, _)| edge).zip(found));
         let (nodes, known, reach) = (&self.nodes, &self.cuts.edges, SAMPLED * self.sizes.tolerance);
         let found = par::map_above(FEW, &faces, |&(face, field)| {
@@ -350,10 +358,17 @@ impl<'f> Refinement<'f> {
 
     /// Edges along which the sign changes by a jump.
     pub(super) fn jumps(&self) -> Places {
-        let mut edges: Vec<(&Edge, &EdgeCut)> = self.cuts.edges.iter().filter(|(_, cut)| cut.jump).collect();
-        edges.sort_unstable_by_key(|(edge, _)| **edge);
+        let crossed = self.leaves.iter().flatten().filter(|leaf| leaf.patch != Patch::Empty);
+        let all = crossed.flat_map(|leaf| {
+            let nodes = leaf.tetrahedron.nodes;
+            EDGES.map(|[i, j]| Edge::between(nodes[i], nodes[j]))
+        });
+        let mut edges: Vec<Edge> =
+            all.filter(|edge| self.cuts.edges.get(edge).is_some_and(|cut| cut.jump)).collect();
+        edges.sort_unstable();
+        edges.dedup();
         let mut places = Places::default();
-        edges.iter().for_each(|(edge, _)| places.add(Aabb::of(edge.nodes().map(|id| self.nodes.position(id)))));
+        edges.iter().for_each(|edge| places.add(Aabb::of(edge.nodes().map(|id| self.nodes.position(id)))));
         places
     }
 
@@ -375,7 +390,8 @@ impl<'f> Refinement<'f> {
         let halved = std::mem::take(&mut self.halved);
         let (leaves, nodes) = (&mut self.leaves, &self.nodes);
         let mut hanging = Vec::new();
-        let may_hang = leaves.iter_mut().enumerate().filter(|(generation, _)| halved >> generation & 0b1111 != 0);
+        let may_hang =
+            leaves.iter_mut().enumerate().filter(|(generation, _)| halved >> generation & 0b1111 != 0);
         for (_, leaves) in may_hang {
             let hangs = par::map(leaves, |leaf| leaf.tetrahedron.hangs(nodes));
             let mut hangs = hangs.into_iter();
