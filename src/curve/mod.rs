@@ -9,6 +9,10 @@
 //! and intersections are classified. There is no hidden epsilon: a tolerance is an argument, and where none is given
 //! the bound is that of the rounding of `f64` at the size of the curve's hull.
 //!
+//! What curves stand for others say how far they are from them ([`Fitted`]): [`fit`] follows any curve that bounds its own
+//! distance from a cubic, [`fit_points`] passes points, [`simplify`] keeps a path's corners and little else,
+//! [`offset`](fn@offset) draws parallels with all of their cusps, and [`stroke`](fn@stroke) outlines that have no holes.
+//!
 //! ```
 //! use ogee::curve::{Bernstein, Cubic};
 //! use ogee::math::Vec2;
@@ -30,16 +34,25 @@ mod bounds;
 mod closed;
 mod convert;
 mod cubic;
+mod dash;
 mod differential;
 pub mod evaluate;
+mod evolute;
+mod fit;
+mod frame;
 mod interpolate;
 mod intersect;
 mod length;
 mod nearest;
+mod offset;
 mod path;
+mod pen;
 mod rational;
 mod reduce;
+mod simplify;
 mod spline;
+mod strand;
+mod stroke;
 mod subdivide;
 
 pub use arc::Arc;
@@ -51,14 +64,19 @@ pub use closed::{Moments, Winding, moments, winding};
 pub use convert::monomials;
 pub use cubic::CubicShape;
 pub use differential::{Curve, Frame, Jet, Tangents, rotation_minimizing_frames, tangents};
+pub use fit::{Corners, Fitted, PointFit, Ray, Side, Source, find_corners, fit, fit_points, schneider};
 pub use interpolate::{Boundary, Spacing};
 pub use intersect::{Contact, Meeting, intersect, intersect_line, self_intersections};
 pub use length::{ArcLength, length, speed_minima};
 pub use nearest::{Nearest, nearest, nearest_all};
+pub use offset::offset;
 pub use path::{Path, Piece, Subpath};
+pub use pen::{Cap, Join};
 pub use rational::Rational;
 pub use reduce::{Reduced, reduce};
+pub use simplify::simplify;
 pub use spline::{Continuity, Joint, Spline};
+pub use stroke::{Stroke, stroke};
 pub use subdivide::{Joined, join};
 
 use crate::math::Blend;
@@ -120,6 +138,23 @@ pub enum CurveError {
     },
     /// A path that must be closed is open.
     Open,
+    /// A distance or width is infinite or NaN, or not positive where it must be.
+    Distance {
+        /// What was asked for.
+        value: f64,
+    },
+    /// The dashes of a stroke are not of any length together, or one is negative, infinite or NaN.
+    Dash {
+        /// Index of the dash; of the last when they sum up to 0.
+        index: usize,
+    },
+    /// A path would be cut into too many dashes.
+    TooManyDashes {
+        /// About how many.
+        count: f64,
+        /// The most that are drawn.
+        most: usize,
+    },
     /// The degree is too high for this algorithm.
     Degree {
         /// The degree.
@@ -152,6 +187,11 @@ impl fmt::Display for CurveError {
                 write!(f, "piece {piece} does not start where the one before it ends")
             }
             CurveError::Open => write!(f, "the path is not closed"),
+            CurveError::Distance { value } => write!(f, "{value} is no distance"),
+            CurveError::Dash { index } => write!(f, "dash {index} is not a length"),
+            CurveError::TooManyDashes { count, most } => {
+                write!(f, "about {count} dashes where {most} is the most")
+            }
             CurveError::Degree { actual, most } => write!(f, "degree {actual} where {most} is the highest"),
             CurveError::TooClose => {
                 write!(f, "the curves are too close to one another to tell where they meet")
