@@ -191,7 +191,7 @@ impl Prover<'_> {
             if smooth { None } else { self.field.slopes(grown(Aabb::of([a, b, c]), self.tolerance)) };
         let gradient = match slopes {
             Some(slopes) if slopes.gradient.iter().all(|g| g.is_bounded()) => {
-                Vec3::from_array(slopes.gradient.map(|g| g.middle()))
+                Vec3::from_array(slopes.gradient.map(Interval::middle))
             }
             _ => self.field.gradient(middle).1,
         };
@@ -258,7 +258,7 @@ impl Prover<'_> {
         if slopes.range.interval.is_empty() || !slopes.gradient.iter().all(|g| g.is_bounded()) {
             return None;
         }
-        let mean = Vec3::from_array(slopes.gradient.map(|g| g.middle()));
+        let mean = Vec3::from_array(slopes.gradient.map(Interval::middle));
         let spread = Vec3::from_array(slopes.gradient.map(|g| 0.5 * g.width()));
         let slack = from.iter().fold(0.0, |most: f64, d| most.max(spread.dot(d.abs())));
         Some((from.map(|d| value + mean.dot(d)), slack * (1.0 + 1e-9)))

@@ -319,7 +319,7 @@ fn sizes(bounds: Aabb, ranged: bool, options: &Options) -> Result<Sizes, IsoErro
 }
 
 /// The corners of a box.
-pub(self) fn corners_of(bounds: Aabb) -> [Vec3; 8] {
+fn corners_of(bounds: Aabb) -> [Vec3; 8] {
     std::array::from_fn(|i| {
         Vec3::from_array([0, 1, 2].map(|k| if i >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] }))
     })

@@ -6,7 +6,7 @@ use super::lattice::{Lattice, Nodes};
 use super::patch::{Patch, fitting, plainest};
 use super::tetrahedron::{EDGES, FACES, LAST_GENERATION, Tetrahedron};
 use super::{IsoError, Places};
-use crate::math::{Aabb, Vec3};
+use crate::math::{Aabb, Interval, Vec3};
 use crate::par;
 use crate::sdf::{Field, Range, Slopes};
 use std::sync::Arc;
@@ -413,7 +413,7 @@ fn has_one_sheet(slopes: &Slopes) -> bool {
     if !slopes.gradient.iter().all(|g| g.is_bounded()) {
         return false;
     }
-    let middle = slopes.gradient.map(|g| g.middle());
+    let middle = slopes.gradient.map(Interval::middle);
     let least = (0..3).map(|k| {
         let g = slopes.gradient[k];
         (g.lo * middle[k]).min(g.hi * middle[k])
