@@ -7,7 +7,7 @@ mod crossing;
 mod pairs;
 
 use crossing::{Crossings, crossings};
-use ogee::isosurface::{self, IsoError, Meshed, Options};
+use ogee::isosurface::{self, GridMethod, IsoError, Meshed, Options, mesh_on_grid};
 use ogee::math::{Aabb, Vec3};
 use ogee::mesh::{Defects, Solid};
 use ogee::sdf::{Blend, Expr, Field, Implicit, MeshField, Periodic, Primitive, Tape};
@@ -231,6 +231,30 @@ fn many_parts_and_tunnels() {
     let Meshed { mesh, report } = meshed(&tape, &options, "gyroid");
     assert_eq!(report.certified, None);
     assert!(mesh.measures().genus.is_some_and(|genus| genus > 3), "{:?}", mesh.measures());
+}
+
+/// Grids close whatever passes them: ambiguous faces, sheets in one cube, the border of the box.
+#[test]
+fn grids_make_closed_manifolds() {
+    let gyroid = primitive(Primitive::Periodic { kind: Periodic::Gyroid, period: 0.6 }).tape();
+    let ball = sphere(0.7).tape();
+    let noise =
+        formula(|x, y, z| (x * 37.0 + y * 91.0).sin() + (y * 53.0 - z * 77.0).sin() + (z * x * 211.0).sin());
+    for method in [GridMethod::MarchingCubes, GridMethod::SurfaceNets] {
+        for (name, tape) in [("gyroid", &gyroid), ("ball", &ball), ("noise", &noise)] {
+            let solid = match mesh_on_grid(tape, block(), 14, method) {
+                Ok(solid) => solid,
+                Err(IsoError::Pinched(_)) if name == "noise" && method == GridMethod::SurfaceNets => continue,
+                Err(error) => panic!("{name} {method:?}: {error}"),
+            };
+            assert_eq!(Defects::of(solid.mesh()), Defects::default(), "{name} {method:?}");
+            assert!(solid.measures().volume > 0.0, "{name} {method:?}");
+        }
+        let solid = mesh_on_grid(&ball, block(), 40, method).expect("a mesh");
+        let exact = 4.0 / 3.0 * PI * 0.343;
+        assert!((solid.measures().volume / exact - 1.0).abs() < 0.01, "{method:?}");
+        near(&ball, &solid, 0.01, 1.0, "ball on a grid");
+    }
 }
 
 /// The tape of a formula of the coordinates.

@@ -9,6 +9,7 @@
 mod bounds;
 mod certify;
 mod crossing;
+mod cubes;
 mod extract;
 mod lattice;
 mod near;
@@ -24,6 +25,7 @@ use refine::{Refinement, Sizes};
 use std::fmt;
 
 pub use bounds::find_bounds;
+pub use cubes::{GridMethod, mesh_on_grid};
 
 /// What a meshing is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,6 +140,8 @@ pub enum IsoError {
     },
     /// The field's ranges do not hold its values: the mesh did not close.
     Contradiction(Defects),
+    /// Surface nets in which two sheets share an edge, as they may where a face of the grid is passed twice.
+    Pinched(Defects),
 }
 
 impl fmt::Display for IsoError {
@@ -164,6 +168,11 @@ impl fmt::Display for IsoError {
             IsoError::TooManyCells { limit } => {
                 write!(f, "more than {limit} cells are needed; allow more, or a larger tolerance")
             }
+            IsoError::Pinched(defects) => write!(
+                f,
+                "sheets share {} edges on this grid; use a finer one, or marching cubes",
+                defects.non_manifold_edges
+            ),
             IsoError::Contradiction(_) => {
                 f.write_str("the field's ranges do not hold its values, so the mesh did not close")
             }
