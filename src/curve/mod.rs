@@ -43,7 +43,9 @@ mod frame;
 mod interpolate;
 mod intersect;
 mod length;
+mod length_cubic;
 mod nearest;
+mod nearest_cubic;
 mod offset;
 mod path;
 mod pen;
@@ -155,13 +157,6 @@ pub enum CurveError {
         /// The most that are drawn.
         most: usize,
     },
-    /// The degree is too high for this algorithm.
-    Degree {
-        /// The degree.
-        actual: usize,
-        /// The highest that it takes.
-        most: usize,
-    },
     /// Two curves run so near to one another for so long, without being one, that their meetings cannot be told apart.
     TooClose,
     /// The equations of an interpolation have no unique solution at this size.
@@ -192,7 +187,6 @@ impl fmt::Display for CurveError {
             CurveError::TooManyDashes { count, most } => {
                 write!(f, "about {count} dashes where {most} is the most")
             }
-            CurveError::Degree { actual, most } => write!(f, "degree {actual} where {most} is the highest"),
             CurveError::TooClose => {
                 write!(f, "the curves are too close to one another to tell where they meet")
             }
@@ -209,12 +203,6 @@ fn check_finite<P: Blend>(points: &[P]) -> Result<(), CurveError> {
         Some(index) => Err(CurveError::NotFinite { index }),
         None => Ok(()),
     }
-}
-
-/// Checks that products of two such curves have binomials that do not overflow.
-fn check_degree(actual: usize) -> Result<(), CurveError> {
-    const MOST: usize = 500;
-    if actual <= MOST { Ok(()) } else { Err(CurveError::Degree { actual, most: MOST }) }
 }
 
 /// Checks that a tolerance or accuracy is a positive finite number.
