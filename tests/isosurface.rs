@@ -185,7 +185,7 @@ fn creased_models() {
     let tape = part.tape();
     let Meshed { mesh, report } = meshed(&tape, &Options { certify: false, ..Options::new(0.03) }, "part");
     assert_eq!(report.capped, 0, "part: {report:?}");
-    near(&tape, &mesh, 0.03, 0.7, "part");
+    near(&tape, &mesh, 0.03, 1.0, "part");
     assert_eq!(mesh.measures().genus, Some(5));
 }
 
