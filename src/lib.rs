@@ -39,7 +39,7 @@
 //! |---|---|
 //! | ground | [`math`], [`par`], [`numeric`] |
 //! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`], [`sdf`] |
-//! | verbs | [`tessellate`], [`boolean`], [`hull`] |
+//! | verbs | [`tessellate`], [`isosurface`], [`boolean`], [`hull`] |
 //! | worlds | [`csg`] recipe to solid, [`io`] values and bytes, [`plot`] curves and data to figures, [`render`] solids to pictures, [`script`] text to recipe |
 //! | shell | `cli`, `main.rs`: paths, clock, environment, terminal; only in the program |
 
@@ -58,6 +58,7 @@ pub mod spatial;
 // verbs
 pub mod boolean;
 pub mod hull;
+pub mod isosurface;
 pub mod tessellate;
 
 // worlds

@@ -89,6 +89,7 @@ fn read(source: &Source) -> Result<Mesh, Stop> {
     match source.kind()? {
         Kind::Mesh(format) => source.mesh(format),
         Kind::Script => Err(Stop::about(source, format!("this is a script, build it first; {}", endings()))),
+        Kind::Formula => Err(Stop::about(source, "this is a formula; `ogee build` makes a mesh of it")),
         Kind::Drawing | Kind::Table | Kind::Points => Err(Stop::about(source, "this is not a mesh")),
     }
 }

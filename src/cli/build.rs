@@ -1,3 +1,4 @@
+use super::formula::FormulaArgs;
 use super::input::{Kind, Source};
 use super::model::{self, Times};
 use super::output::{self, Output};
@@ -17,14 +18,15 @@ Examples:
   ogee build bracket.scad -o bracket.obj
   ogee build bracket.scad -o bracket.stl -o bracket.ply -D width=40 -D 'label=\"A\"'
   ogee build bracket.scad --summary json
-  ogee build - -o - --format off < bracket.scad > bracket.off";
+  ogee build - -o - --format off < bracket.scad > bracket.off
+  ogee build gyroid.vm --box -1,-1,-1,1,1,1 --tolerance 0.01 -o gyroid.stl --summary text";
 
-/// Make a mesh from a script
+/// Make a mesh from a script or a formula
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// The script; `-` reads it from standard input
-    #[arg(value_name = "IN.scad", value_hint = ValueHint::FilePath)]
+    /// The script, or a formula as .vm; `-` reads a script from standard input
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     input: PathBuf,
     /// Where to write the mesh, in the format of the ending; may be repeated; `-` is standard output
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath, required_unless_present = "summary")]
@@ -38,6 +40,8 @@ pub(super) struct Args {
     /// Exit with 4 when a mesh that takes part, or the result, is not closed
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    formula: FormulaArgs,
     #[command(flatten)]
     script: ScriptArgs,
 }
@@ -57,7 +61,7 @@ impl Job {
             Ok(Kind::Mesh(_)) => Some("this is a mesh, not a script; see `ogee info` and `ogee boolean`"),
             Ok(Kind::Drawing) => Some("this is a drawing, not a script; see `ogee info` and `ogee plot`"),
             Ok(Kind::Table | Kind::Points) => Some("these are data, not a script; see `ogee plot`"),
-            Ok(Kind::Script) | Err(_) => None,
+            Ok(Kind::Script | Kind::Formula) | Err(_) => None,
         };
         if let Some(hint) = hint {
             return Err(Stop::about(source, hint));
@@ -72,6 +76,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let mut times = Times::default();
     let mut summary = Summary::default();
     summary.row("input", job.source.to_string());
+    if matches!(job.source.kind(), Ok(Kind::Formula)) {
+        let solid = args.formula.build(&job.source, &mut times, &mut summary, terminal)?;
+        write_solid(&job, &solid, &mut times, &mut summary, terminal)?;
+        summary.row("seconds", times.rows());
+        return job.summary.map_or(Ok(()), |form| print(&summary.print(form)));
+    }
+    args.formula.refuse_for_scripts()?;
     let built = model::build(&job.source, &args.script, job.strict, &mut times, terminal)?;
     match built.shape {
         Shape::Solid(solid) => write_solid(&job, &solid, &mut times, &mut summary, terminal)?,

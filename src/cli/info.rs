@@ -48,6 +48,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
         Kind::Table | Kind::Points => {
             return Err(Stop::about(source, "these are data; `ogee plot` draws them"));
         }
+        Kind::Formula => {
+            return Err(Stop::about(source, "this is a formula; see `ogee build` and `ogee eval`"));
+        }
         Kind::Script => {
             match model::build(&source, &args.script, false, &mut Times::default(), terminal)?.shape {
                 Shape::Solid(solid) => describe(solid.mesh(), &mut summary),

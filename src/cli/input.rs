@@ -33,11 +33,18 @@ pub(super) enum Kind {
     Table,
     /// Lists of points in JSON.
     Points,
+    /// A formula, one operation a line.
+    Formula,
 }
 
-/// Endings of files that hold plane things.
-const FLAT: [(&str, Kind); 4] =
-    [("svg", Kind::Drawing), ("csv", Kind::Table), ("tsv", Kind::Table), ("json", Kind::Points)];
+/// Endings of files that hold neither scripts nor meshes.
+const OTHERS: [(&str, Kind); 5] = [
+    ("svg", Kind::Drawing),
+    ("csv", Kind::Table),
+    ("tsv", Kind::Table),
+    ("json", Kind::Points),
+    ("vm", Kind::Formula),
+];
 
 impl Source {
     /// What was typed, meant.
@@ -55,8 +62,8 @@ impl Source {
         if let Some(format) = Format::from_ending(&ending) {
             return Ok(Kind::Mesh(format));
         }
-        let flat = FLAT.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
-        if let Some(&(_, kind)) = flat {
+        let other = OTHERS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
+        if let Some(&(_, kind)) = other {
             return Ok(kind);
         }
         let reason = check_file(path).err().unwrap_or_else(|| format!("unknown ending; {}", endings()));

@@ -9,6 +9,7 @@ mod builtins;
 mod check;
 mod diagnostic;
 mod eval;
+mod formula;
 mod host;
 mod info;
 mod input;

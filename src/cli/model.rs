@@ -31,6 +31,12 @@ impl Times {
         result
     }
 
+    /// Adds to the seconds of a stage.
+    pub(super) fn add(&mut self, name: &str, seconds: f64) {
+        let before = self.stages.get(name).and_then(Value::as_f64).unwrap_or(0.0);
+        self.stages.insert(name.to_owned(), (before + seconds).into());
+    }
+
     /// Names and seconds.
     pub(super) fn rows(&self) -> Map<String, Value> {
         self.stages.clone()

@@ -101,6 +101,7 @@ fn load(
         Kind::Drawing | Kind::Table | Kind::Points => {
             Err(Stop::about(source, "this is flat; `ogee plot` draws it"))
         }
+        Kind::Formula => Err(Stop::about(source, "this is a formula; `ogee build` makes a mesh of it")),
         Kind::Script => {
             let built = model::build(source, &args.script, false, times, terminal)?;
             match built.shape {

@@ -1,5 +1,6 @@
 use super::Range;
 use crate::math::{Aabb, Interval, Vec3};
+use std::sync::Arc;
 
 /// A function of space whose surface is where it changes its sign: negative inside, and zero counts as outside.
 ///
@@ -91,7 +92,7 @@ pub trait Field: Send + Sync {
 
     /// A field that gives the same bits for every point of the cell and costs less; `None` where this one is as
     /// cheap as it gets.
-    fn within(&self, _cell: Aabb) -> Option<Box<dyn Field + '_>> {
+    fn within(&self, _cell: Aabb) -> Option<Arc<dyn Field>> {
         None
     }
 

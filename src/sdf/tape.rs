@@ -10,6 +10,7 @@ use super::{Range, registers};
 use crate::math::{Aabb, Interval, Vec3};
 use std::array::from_fn;
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// A formula put in order for evaluation: equal parts merged, a register reused as soon as nobody needs it.
 ///
@@ -308,8 +309,8 @@ impl Field for Tape {
         self.lipschitz
     }
 
-    fn within(&self, cell: Aabb) -> Option<Box<dyn Field + '_>> {
-        self.pruned(cell).map(|tape| Box::new(tape) as Box<dyn Field>)
+    fn within(&self, cell: Aabb) -> Option<Arc<dyn Field>> {
+        self.pruned(cell).map(|tape| Arc::new(tape) as Arc<dyn Field>)
     }
 
     fn bounds(&self) -> Option<Aabb> {

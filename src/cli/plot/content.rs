@@ -51,6 +51,9 @@ impl Drawn {
             Kind::Drawing => times.stage(terminal, "read", "reading", || drawing(source, terminal))?,
             Kind::Table => times.stage(terminal, "read", "reading", || table(args, source))?,
             Kind::Points => times.stage(terminal, "read", "reading", || points(args, source))?,
+            Kind::Formula => {
+                return Err(Stop::about(source, "this is a formula; `ogee build` makes a mesh of it"));
+            }
             Kind::Mesh(_) => return Err(Stop::about(source, "this is a mesh; `ogee render` draws it")),
         };
         if drawn.layers.is_empty() {
