@@ -44,6 +44,7 @@ pub use jet::{Curvature, Jet};
 //pub use meeting::{Hit, ray_hits};
 //pub use nearest::{Nearest, nearest};
 pub use patch::Patch;
+pub(crate) use patch::check_degrees;
 pub use rational::RationalPatch;
 pub use sides::{Gluing, Side, Sides};
 //pub use skin::{Coons, Revolution, Ruled};

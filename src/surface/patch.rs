@@ -218,7 +218,7 @@ impl Patch {
     }
 }
 
-pub(super) fn check_degrees(degrees: [usize; 2]) -> Result<(), SurfaceError> {
+pub(crate) fn check_degrees(degrees: [usize; 2]) -> Result<(), SurfaceError> {
     let actual = degrees[0].max(degrees[1]);
     if actual <= MOST_DEGREE { Ok(()) } else { Err(SurfaceError::Degree { actual, most: MOST_DEGREE }) }
 }

@@ -1,0 +1,114 @@
+//! How far a triangle is off its surface: a proof, and a measurement.
+
+use super::table::Table;
+use crate::math::Vec3;
+use crate::surface::Surface;
+
+/// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
+pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
+    let rough = bound_by(table.bend(parameters), parameters);
+    if rough <= 1.0 {
+        return rough;
+    }
+    let range = |axis: usize| {
+        let all = parameters.map(|p| p[axis]);
+        [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let part = [range(0), range(1)];
+    if part.iter().any(|[low, high]| low >= high) {
+        return rough;
+    }
+    let tolerance = table.tolerance(parameters);
+    let tight = surface.second_bounds(part).map(|bends| bound_by(bends.map(|b| b / tolerance), parameters));
+    tight.map_or(rough, |tight| tight.min(rough))
+}
+
+/// Half the squared radius of the smallest circle around the triangle in a norm that bounds the second derivatives:
+/// `2 uv |du dv| <= uv (s du^2 + dv^2 / s)` for every s.
+fn bound_by([uu, uv, vv]: [f64; 3], parameters: &[[f64; 2]; 3]) -> f64 {
+    let with = |s: f64| {
+        let scale = [(uu + s * uv).sqrt(), (vv + uv / s).sqrt()];
+        0.5 * enclosing_radius_squared(parameters.map(|p| [p[0] * scale[0], p[1] * scale[1]]))
+    };
+    if uv == 0.0 {
+        return with(1.0);
+    }
+    let extent = |axis: usize| {
+        let all = parameters.map(|p| p[axis]);
+        all.into_iter().fold(f64::NEG_INFINITY, f64::max) - all.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let by_shape = extent(1) / extent(0);
+    let by_bends = (uu / vv).sqrt();
+    let fits = |s: &f64| *s > 0.0 && s.is_finite();
+    [by_shape, by_bends, (by_shape * by_bends).sqrt()]
+        .into_iter()
+        .filter(fits)
+        .map(with)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The squared radius of the smallest circle around three points.
+fn enclosing_radius_squared([p, q, r]: [[f64; 2]; 3]) -> f64 {
+    let square = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
+    let (a, b, c) = (square(q, r), square(r, p), square(p, q));
+    let longest = a.max(b).max(c);
+    let others = (a + b + c) - longest;
+    let cross = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    if others <= longest || cross == 0.0 {
+        return 0.25 * longest;
+    }
+    // The circumcircle; no larger circle is ever needed.
+    (a * b * c / (4.0 * cross * cross)).min(longest / 3.0)
+}
+
+/// Barycentric coordinates where distances are measured.
+const PLACES: [[f64; 3]; 7] = [
+    [0.5, 0.5, 0.0],
+    [0.0, 0.5, 0.5],
+    [0.5, 0.0, 0.5],
+    [1.0 / 3.0; 3],
+    [0.6, 0.2, 0.2],
+    [0.2, 0.6, 0.2],
+    [0.2, 0.2, 0.6],
+];
+
+/// The largest distance found between a triangle and its part of the surface: of places of the triangle from a point of
+/// the surface that a Newton step brings near, and of points of the surface from the triangle.
+pub(super) fn measure(surface: &dyn Surface, parameters: &[[f64; 2]; 3], corners: [Vec3; 3]) -> f64 {
+    let domain = surface.domain();
+    let mut most: f64 = 0.0;
+    for weights in PLACES {
+        let [u, v] = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>());
+        let flat: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
+        let jet = surface.jet(u, v);
+        let off = flat - jet.point;
+        let straight = off.length();
+        let [e, f, g] = jet.first_form();
+        let determinant = e * g - f * f;
+        let (a, b) = (off.dot(jet.du), off.dot(jet.dv));
+        let moved = [u + (g * a - f * b) / determinant, v + (e * b - f * a) / determinant];
+        let near = if moved[0].is_finite() && moved[1].is_finite() {
+            let at = [0, 1].map(|axis: usize| moved[axis].clamp(domain[axis][0], domain[axis][1]));
+            (flat - surface.point(at[0], at[1])).length().min(straight)
+        } else {
+            straight
+        };
+        most = most.max(near).max(distance_to_triangle(jet.point, corners).min(straight));
+    }
+    most
+}
+
+/// The distance of a point from a triangle.
+pub(super) fn distance_to_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let beside = |from: Vec3, to: Vec3| normal.cross(to - from).dot(point - from) < 0.0;
+    if normal.length_squared() > 0.0 && !beside(a, b) && !beside(b, c) && !beside(c, a) {
+        return (point - a).dot(normal.normalize()).abs();
+    }
+    let to_segment = |from: Vec3, to: Vec3| {
+        let side = to - from;
+        let along = (point - from).dot(side) / side.length_squared().max(f64::MIN_POSITIVE);
+        (point - from - along.clamp(0.0, 1.0) * side).length()
+    };
+    to_segment(a, b).min(to_segment(b, c)).min(to_segment(c, a))
+}

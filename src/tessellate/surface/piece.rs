@@ -1,0 +1,145 @@
+//! One piece: rows, then better triangles where some fail.
+
+use super::edge::Edges;
+use super::frame::{Frame, Local, Node, settled};
+use super::layout::{Layout, Piece};
+use super::refine::Refinement;
+use super::table::Table;
+use super::{SurfaceOptions, TessellationError, check};
+use crate::math::Vec3;
+use crate::surface::{Side, Surface};
+
+/// A tessellated piece.
+pub(super) struct Made {
+    /// Of inner vertices.
+    pub(super) positions: Vec<Vec3>,
+    /// Vertices; the inner ones of the piece follow those of edges.
+    pub(super) triangles: Vec<[Vertex; 3]>,
+    pub(super) parameters: Vec<[[f64; 2]; 3]>,
+    /// Largest proven distance, where it is one.
+    pub(super) bound: Option<f64>,
+    /// Largest distance found.
+    pub(super) measured: f64,
+}
+
+/// A vertex of the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Vertex {
+    /// Of an edge, numbered over all.
+    Shared(u32),
+    /// Of this piece.
+    Inner(u32),
+}
+
+impl Vertex {
+    /// The number in the mesh, where the inner vertices of the piece begin at `base`.
+    pub(super) fn resolved(self, base: u32) -> u32 {
+        match self {
+            Vertex::Shared(id) => id,
+            Vertex::Inner(id) => base + id,
+        }
+    }
+}
+
+/// Segments are laid out longer than right triangles allow, since staggered ones are nearly equilateral; the few that
+/// fail are split.
+const STRETCH: f64 = 1.1;
+
+pub(super) fn tessellate(
+    layout: &Layout<'_>,
+    piece: &Piece,
+    edges: &Edges,
+    options: &SurfaceOptions,
+    room: u64,
+) -> Result<Made, TessellationError> {
+    let surface = layout.surfaces[piece.surface];
+    let table = Table::new(piece.surface, surface, piece.domain, options)?;
+    let (nodes, sides) = border(layout, piece, edges);
+    let same = |a: usize, b: usize| piece.edges[a].edge == piece.edges[b].edge;
+    let glued = [same(2, 3), same(0, 1)];
+    let frame = Frame { table: &table, domain: piece.domain, nodes, sides, glued, stretch: STRETCH };
+    let expected = 2.0 * frame.estimate(0).min(frame.estimate(1));
+    if !(expected <= room as f64) {
+        let triangles = if expected.is_finite() { expected as u64 } else { u64::MAX };
+        return Err(TessellationError::TooLarge { triangles, most: room });
+    }
+    let (triangles, nodes) = frame.fill();
+    let positions = nodes.iter().map(|node| match node.shared {
+        Some(id) => edges.positions[id as usize],
+        None => surface.point(node.at[0], node.at[1]),
+    });
+    let positions = positions.collect();
+    let mut refinement = Refinement::new(surface, &table, nodes, positions, triangles);
+    refinement.run(room).map_err(|error| error.of(piece.surface))?;
+    Ok(finish(surface, &table, &refinement))
+}
+
+/// The vertices of the sides, and each side from its smaller parameter on. Corners are one vertex for both of their
+/// sides; the two sides of a seam have different vertices here, since their parameters differ.
+fn border(layout: &Layout<'_>, piece: &Piece, edges: &Edges) -> (Vec<Node>, [Vec<Local>; 4]) {
+    let is_pole = |side: Side| layout.edges[piece.edges[side as usize].edge].pole;
+    let mut nodes: Vec<Node> = Vec::new();
+    let mut sides = [const { Vec::new() }; 4];
+    for side in Side::ALL {
+        let vertices = edges.side(layout, piece.edges[side as usize], piece.domain[side.axis()]);
+        for (index, &(id, t)) in vertices.iter().enumerate() {
+            let free = is_pole(side).then_some(side.axis());
+            nodes.push(Node { shared: Some(id), at: side.at(piece.domain, t), free });
+            let local = nodes.len() as Local - 1;
+            sides[side as usize].push(local);
+            // Left and right begin and end where bottom and top do.
+            if side.axis() == 1 {
+                let last = usize::from(side == Side::Right);
+                let corner_of = |end: &Vec<Local>| if last == 0 { end[0] } else { end[end.len() - 1] };
+                let ends = [corner_of(&sides[0]), corner_of(&sides[1])];
+                let count = vertices.len();
+                if is_pole(side) {
+                    // One vertex for the whole side: that of both corners.
+                    let [low, high] = ends;
+                    nodes[low as usize].free = free;
+                    sides[side as usize] = vec![low];
+                    let other = if last == 0 { 0 } else { sides[1].len() - 1 };
+                    sides[1][other] = low;
+                    let _ = high;
+                } else if index == 0 {
+                    sides[side as usize][0] = ends[0];
+                } else if index + 1 == count {
+                    sides[side as usize][index] = ends[1];
+                }
+            }
+        }
+    }
+    (nodes, sides)
+}
+
+fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> Made {
+    let mut inner = vec![0; refinement.nodes.len()];
+    let mut positions = Vec::new();
+    for (local, node) in refinement.nodes.iter().enumerate() {
+        if node.shared.is_none() {
+            inner[local] = positions.len() as u32;
+            positions.push(refinement.positions[local]);
+        }
+    }
+    let vertex = |local: Local| match refinement.nodes[local as usize].shared {
+        Some(id) => Vertex::Shared(id),
+        None => Vertex::Inner(inner[local as usize]),
+    };
+    let mut made =
+        Made { positions, triangles: Vec::new(), parameters: Vec::new(), bound: table.proven.then_some(0.0), measured: 0.0 };
+    for (index, triangle) in refinement.triangles.iter().enumerate() {
+        let vertices = triangle.map(vertex);
+        if vertices[0] == vertices[1] || vertices[1] == vertices[2] || vertices[2] == vertices[0] {
+            continue;
+        }
+        let parameters = settled(triangle.map(|local| refinement.nodes[local as usize]));
+        if let Some(bound) = &mut made.bound {
+            *bound = bound.max(refinement.ratios[index] * table.tolerance(&parameters));
+        }
+        let corners = triangle.map(|local| refinement.positions[local as usize]);
+        made.measured = made.measured.max(check::measure(surface, &parameters, corners));
+        made.triangles.push(vertices);
+        made.parameters.push(parameters);
+    }
+    made
+}
