@@ -2,25 +2,18 @@ use ogee::surface::*; use ogee::tessellate::*; use ogee::mesh::*; use std::time:
 fn show(name:&str, s:&[&dyn Surface], o:&SurfaceOptions){
   let t=Instant::now();
   match surfaces(s,o){ Ok(m)=>{ let d=Defects::of(&m.mesh);
-   println!("{name}: {} tris {} verts bound {:?} measured {:.3e} edges {:?} poles {} open {} nm {} dup {} mis {} in {:?}",m.mesh.triangles.len(),m.mesh.positions.len(),m.error.bound,m.error.measured,m.edges,m.poles,d.open_edges,d.non_manifold_edges,d.duplicate_triangles,d.misoriented_edges,t.elapsed());
+   println!("{name}: {} tris bound {:?} measured {:.3e} nm {} dup {} mis {} in {:?}",m.mesh.triangles.len(),m.error.bound,m.error.measured,d.non_manifold_edges,d.duplicate_triangles,d.misoriented_edges,t.elapsed());
   }, Err(e)=>println!("{name}: {e}") } }
 fn main(){
   let text=std::fs::read("fixtures/patches/teapot.bpt").unwrap();
   let patches=ogee::io::bpt::read(&text).unwrap();
   let refs:Vec<&dyn Surface>=patches.iter().map(|p|p as &dyn Surface).collect();
-  for tol in [1e-1,1e-2,1e-3]{ let mut o=SurfaceOptions::within(tol); show(&format!("teapot proven {tol}"),&refs,&o); o.guarantee=Guarantee::Measured; show(&format!("teapot measured {tol}"),&refs,&o);}
+  for tol in [1e-2,1e-3]{ let mut o=SurfaceOptions::within(tol); show(&format!("teapot proven {tol}"),&refs,&o); o.guarantee=Guarantee::Measured; show(&format!("teapot measured {tol}"),&refs,&o);}
   for tol in [1e-1,1e-2,1e-3]{ let o=SurfaceOptions::within(tol);
    println!("sphere ideal {}", 8.0*3.14159/(3.0*3f64.sqrt()*tol));
    show("sphere",&[&Classic::Sphere{radius:1.0}],&o);
    show("torus",&[&Classic::Torus{major:2.0,minor:1.0}],&o);
-   show("cyl",&[&Classic::Cylinder{radius:2.0,height:1.0}],&o);
    show("cone",&[&Classic::Cone{radius:2.0,height:1.0}],&o);
-   show("ellipsoid",&[&Classic::Ellipsoid{radii:[1.,2.,3.]}],&o);
-   show("moebius",&[&Classic::Moebius{radius:2.0,width:1.0}],&o);
-   show("klein",&[&Classic::Klein{radius:2.0,minor:1.0}],&o);
-   show("helicoid",&[&Classic::Helicoid{radius:2.0,pitch:1.0,turns:2.0}],&o);
    show("enneper",&[&Classic::Enneper{reach:1.0}],&o);
-   show("plane",&[&Classic::Plane{size:[1.0,2.0]}],&o);
-   show("superell",&[&Classic::Superellipsoid{radii:[1.,1.,1.],exponents:[0.5,0.5]}],&o);
   }
 }

@@ -7,7 +7,7 @@ use crate::math::Blend;
 pub(super) type Degrees = [usize; 2];
 
 /// Columns up to this length fit on the stack.
-const SMALL: usize = 16;
+const SMALL: usize = 8;
 
 /// The point at a parameter: de Casteljau in v of every row, then in u. At u or v of 0 and 1 it has the bits of the
 /// border curve's own de Casteljau.
@@ -56,33 +56,36 @@ fn curve_jet<P: Blend>(row: &mut [P], t: f64) -> [P; 3] {
 /// Value, u, v, uu, uv, vv.
 pub(super) fn jet<P: Blend>(points: &[P], degrees: Degrees, u: f64, v: f64) -> [P; 6] {
     let (height, width) = (degrees[0] + 1, degrees[1] + 1);
-    let mut row = vec![P::ZERO; width];
-    let mut columns = vec![P::ZERO; 3 * height];
+    if height <= SMALL && width <= SMALL {
+        jet_in(points, degrees, u, v, &mut [P::ZERO; SMALL], &mut [[P::ZERO; SMALL]; 3])
+    } else {
+        let mut columns = [vec![P::ZERO; height], vec![P::ZERO; height], vec![P::ZERO; height]];
+        jet_in(points, degrees, u, v, &mut vec![P::ZERO; width], &mut columns)
+    }
+}
+
+/// [`jet`] with room for a row, and for a column of values, first and second derivatives.
+fn jet_in<P: Blend, C: AsMut<[P]>>(
+    points: &[P],
+    degrees: Degrees,
+    u: f64,
+    v: f64,
+    row: &mut [P],
+    columns: &mut [C; 3],
+) -> [P; 6] {
+    let (height, width) = (degrees[0] + 1, degrees[1] + 1);
     for (i, points) in points.chunks_exact(width).enumerate() {
-        row.copy_from_slice(points);
-        for (order, derivative) in curve_jet(&mut row, v).into_iter().enumerate() {
-            columns[order * height + i] = derivative;
+        row[..width].copy_from_slice(points);
+        let derivatives = curve_jet(&mut row[..width], v);
+        for (column, derivative) in columns.iter_mut().zip(derivatives) {
+            column.as_mut()[i] = derivative;
         }
     }
-    let [plain, rest @ ..] = columns.as_chunks_mut_by(height);
-    let [value, du, duu] = curve_jet(plain, u);
-    let [first, second] = rest;
-    let [dv, duv, _] = curve_jet(first, u);
-    let [dvv, ..] = curve_jet(second, u);
+    let [plain, first, second] = columns;
+    let [value, du, duu] = curve_jet(&mut plain.as_mut()[..height], u);
+    let [dv, duv, _] = curve_jet(&mut first.as_mut()[..height], u);
+    let [dvv, ..] = curve_jet(&mut second.as_mut()[..height], u);
     [value, du, dv, duu, duv, dvv]
-}
-
-/// Three slices of equal length.
-trait ThreeParts<P> {
-    fn as_chunks_mut_by(&mut self, length: usize) -> [&mut [P]; 3];
-}
-
-impl<P> ThreeParts<P> for [P] {
-    fn as_chunks_mut_by(&mut self, length: usize) -> [&mut [P]; 3] {
-        let (first, rest) = self.split_at_mut(length);
-        let (second, third) = rest.split_at_mut(length);
-        [first, second, third]
-    }
 }
 
 /// The net with u and v exchanged.

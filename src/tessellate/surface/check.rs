@@ -15,6 +15,11 @@ pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]
         [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     };
     let part = [range(0), range(1)];
+    // Finer bounds cost much: only where they may help, or where a triangle is far smaller than its cell.
+    const MAY_HELP: f64 = 1.5;
+    if rough > MAY_HELP && !table.is_far_smaller(part) {
+        return rough;
+    }
     if part.iter().any(|[low, high]| low >= high) {
         return rough;
     }
@@ -73,7 +78,8 @@ const PLACES: [[f64; 3]; 7] = [
 ];
 
 /// The largest distance found between a triangle and its part of the surface: of places of the triangle from a point of
-/// the surface that a Newton step brings near, and of points of the surface from the triangle.
+/// the surface that a Newton step brings near. Those points cover the surface as the places cover the mesh, so it is the
+/// distance both ways.
 pub(super) fn measure(surface: &dyn Surface, parameters: &[[f64; 2]; 3], corners: [Vec3; 3]) -> f64 {
     let domain = surface.domain();
     let mut most: f64 = 0.0;
@@ -93,22 +99,8 @@ pub(super) fn measure(surface: &dyn Surface, parameters: &[[f64; 2]; 3], corners
         } else {
             straight
         };
-        most = most.max(near).max(distance_to_triangle(jet.point, corners).min(straight));
+        // NaN must not pass for small.
+        most = if near <= most { most } else { near };
     }
     most
-}
-
-/// The distance of a point from a triangle.
-pub(super) fn distance_to_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
-    let normal = (b - a).cross(c - a);
-    let beside = |from: Vec3, to: Vec3| normal.cross(to - from).dot(point - from) < 0.0;
-    if normal.length_squared() > 0.0 && !beside(a, b) && !beside(b, c) && !beside(c, a) {
-        return (point - a).dot(normal.normalize()).abs();
-    }
-    let to_segment = |from: Vec3, to: Vec3| {
-        let side = to - from;
-        let along = (point - from).dot(side) / side.length_squared().max(f64::MIN_POSITIVE);
-        (point - from - along.clamp(0.0, 1.0) * side).length()
-    };
-    to_segment(a, b).min(to_segment(b, c)).min(to_segment(c, a))
 }

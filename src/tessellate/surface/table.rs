@@ -109,6 +109,14 @@ impl Table {
         })
     }
 
+    /// Whether a part is narrower than a quarter of a cell along an axis.
+    pub(super) fn is_far_smaller(&self, part: [[f64; 2]; 2]) -> bool {
+        [0, 1].into_iter().any(|axis: usize| {
+            let [low, high] = self.domain[axis];
+            (part[axis][1] - part[axis][0]) * self.cells[axis] as f64 <= 0.25 * (high - low)
+        })
+    }
+
     fn met_cells(&self, parameters: &[[f64; 2]; 3]) -> impl Iterator<Item = usize> + use<> {
         let [[i0, i1], [j0, j1]] = self.met(parameters);
         let width = self.cells[1];
