@@ -20,35 +20,35 @@
 //! # Ok::<(), ogee::surface::SurfaceError>(())
 //! ```
 
-//mod b_spline;
+mod b_spline;
 mod classic;
 mod formula;
 mod grid;
 mod jet;
 mod limit;
-//mod loft;
-//mod meeting;
-//mod nearest;
+mod loft;
+mod meeting;
+mod nearest;
 mod net;
 mod patch;
 mod rational;
 mod sides;
-//mod skin;
-//mod sweep;
+mod skin;
+mod sweep;
 
-//pub use b_spline::from_b_spline;
+pub use b_spline::from_b_spline;
 pub use classic::Classic;
 pub use formula::Formula;
 pub use jet::{Curvature, Jet};
-//pub use loft::loft;
-//pub use meeting::{Hit, ray_hits};
-//pub use nearest::{Nearest, nearest};
+pub use loft::loft;
+pub use meeting::{Hit, ray_hits};
+pub use nearest::{Nearest, nearest};
 pub use patch::Patch;
 pub(crate) use patch::check_degrees;
 pub use rational::RationalPatch;
 pub use sides::{Gluing, Side, Sides};
-//pub use skin::{Coons, Revolution, Ruled};
-//pub use sweep::{Sweep, Tube};
+pub use skin::{Coons, Revolution, Ruled};
+pub use sweep::{Sweep, Tube};
 
 use crate::curve::CurveError;
 use crate::math::{Vec3, Vec4};
@@ -179,6 +179,8 @@ pub enum SurfaceError {
         /// The highest that is taken.
         most: usize,
     },
+    /// A ray runs along a surface instead of meeting it in points.
+    AlongRay,
     /// A curve that the surface is made of is wrong.
     Curve(CurveError),
 }
@@ -197,6 +199,7 @@ impl fmt::Display for SurfaceError {
             SurfaceError::Degree { actual, most } => {
                 write!(f, "degree {actual} where {most} is the highest")
             }
+            SurfaceError::AlongRay => f.write_str("the ray runs along the surface"),
             SurfaceError::Curve(error) => error.fmt(f),
         }
     }

@@ -10,7 +10,8 @@ pub use extrude::{LinearSweep, linear_extrude};
 pub use flatten::{Flattened, flatten, flatten_spline};
 pub use revolve::{RotateSweep, rotate_extrude};
 pub use surface::{
-    Achieved, Guarantee, Precision, SurfaceOptions, Tessellation, TessellationError, View, surface, surfaces,
+    Achieved, CloseError, Guarantee, Precision, SurfaceOptions, Tessellation, TessellationError, View, capped,
+    patches, surface, surfaces, thickened,
 };
 
 use crate::mesh::TooLarge;

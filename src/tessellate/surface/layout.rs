@@ -186,15 +186,15 @@ impl<'a> Builder<'a> {
         for j in 0..=last_v {
             match sides.u {
                 Gluing::Open => {}
-                Gluing::Closed => drop(self.slots.join(slots[0][j], slots[last_u][j])),
-                Gluing::Twisted => drop(self.slots.join(slots[0][j], slots[last_u][last_v - j])),
+                Gluing::Closed => self.join(slots[0][j], slots[last_u][j]),
+                Gluing::Twisted => self.join(slots[0][j], slots[last_u][last_v - j]),
             }
         }
         for i in 0..=last_u {
             match sides.v {
                 Gluing::Open => {}
-                Gluing::Closed => drop(self.slots.join(slots[i][0], slots[i][last_v])),
-                Gluing::Twisted => drop(self.slots.join(slots[i][0], slots[last_u - i][last_v])),
+                Gluing::Closed => self.join(slots[i][0], slots[i][last_v]),
+                Gluing::Twisted => self.join(slots[i][0], slots[last_u - i][last_v]),
             }
         }
         for (side, &is_pole) in Side::ALL.iter().zip(&sides.poles) {
@@ -206,10 +206,16 @@ impl<'a> Builder<'a> {
                     Side::Left => slots[0][k],
                     Side::Right => slots[last_u][k],
                 };
-                (1..=length).for_each(|k| drop(self.slots.join(slot(0), slot(k))));
+                (1..=length).for_each(|k| {
+                    self.slots.join(slot(0), slot(k));
+                });
             }
         }
         Ok(slots)
+    }
+
+    fn join(&mut self, a: Slot, b: Slot) {
+        self.slots.join(a, b);
     }
 
     /// The edge from crossing (i, j) along an axis.

@@ -11,18 +11,20 @@
 //! meets make it a proof (for right triangles: Filip, Magedson, Markot, Surface algorithms using bounds on derivatives,
 //! 1986). It bounds the distance from the mesh to the surface and from the surface to the mesh.
 
-//mod caps;
+mod caps;
 mod check;
 mod edge;
 mod frame;
 mod layout;
+mod patches;
 mod piece;
 mod refine;
 mod table;
-//mod thicken;
+mod thicken;
 
-//pub use caps::{Components, components, solid};
-//pub use thicken::thicken;
+pub use caps::{CloseError, capped};
+pub use patches::patches;
+pub use thicken::thickened;
 
 use crate::math::Vec3;
 use crate::mesh::{Defects, Mesh, TooLarge};
