@@ -1,5 +1,5 @@
 use super::{Patch, SurfaceError};
-use crate::curve::{Bernstein, Spline};
+use crate::curve::Spline;
 use crate::math::Vec3;
 
 /// The bicubic patches of a tensor-product B-spline surface, those of v running fastest. `points` are rows of fixed u;

@@ -3,8 +3,8 @@
 //! [`Patch`] is a tensor-product Bézier patch of any degrees, [`RationalPatch`] one with weights; they can be split,
 //! measured and hit exactly as far as rounding allows. [`Surface`] is what everybody else needs of a surface, and what
 //! a formula of one's own must bring: a domain and points. [`Classic`] holds the surfaces of the textbooks, [`Formula`]
-//! three expressions, and [`Revolution`], [`Ruled`], [`Coons`], [`Tube`], [`Sweep`] are made of curves;
-//! [`loft`] and [`from_b_spline`] give patches.
+//! three expressions, and [`Ruled`], [`Coons`], [`Tube`], [`Sweep`] are made of curves;
+//! [`revolution`], [`loft`] and [`from_b_spline`] give patches.
 //!
 //! Normals point along the cross product of the derivatives by u and by v. Where that vanishes, on collapsed edges and at
 //! poles, the limit from inside the domain is taken.
@@ -47,7 +47,7 @@ pub use patch::Patch;
 pub(crate) use patch::check_degrees;
 pub use rational::RationalPatch;
 pub use sides::{Gluing, Side, Sides};
-pub use skin::{Coons, Revolution, Ruled};
+pub use skin::{Coons, Ruled, revolution};
 pub use sweep::{Sweep, Tube};
 
 use crate::curve::CurveError;

@@ -1,51 +1,44 @@
 //! Surfaces between curves and about an axis.
 
 use super::formula::check_domain;
-use super::rational::projected;
 use super::{Gluing, Jet, RationalPatch, Sides, Surface, SurfaceError};
-use crate::curve::{Bernstein, Curve, Spline};
+use crate::curve::{Curve, Spline};
 use crate::math::{Blend, Vec2, Vec3, Vec4, sin_cos};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// A profile in the half plane of x (distance from the axis) and y (height) turned about the z axis: exact, of rational
-/// patches for each piece of the profile and at most a quarter of a turn.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Revolution;
-
-impl Revolution {
-    /// The patches of a turn from an angle by an angle, in radians; u runs along the profile, v around. A full turn or
-    /// more closes on itself, to the bit.
-    ///
-    /// # Errors
-    /// [`SurfaceError::Number`] for angles that are not finite or zero, and for a profile on both sides of the axis.
-    pub fn patches(profile: &Spline<Vec2>, start: f64, angle: f64) -> Result<Vec<RationalPatch>, SurfaceError> {
-        for (name, value) in [("the start angle", start), ("the angle", angle)] {
-            if !value.is_finite() || (name == "the angle" && value == 0.0) {
-                return Err(SurfaceError::Number { name, value });
-            }
+/// A profile in the half plane of x (distance from the axis) and y (height) turned about the z axis, from an angle by an
+/// angle, in radians: exact, of a rational patch for each piece of the profile and at most a quarter of a turn. u runs
+/// along the profile, v around; a full turn or more closes on itself, to the bit.
+///
+/// # Errors
+/// [`SurfaceError::Number`] for angles that are not finite or zero, and for a profile on both sides of the axis.
+pub fn revolution(profile: &Spline<Vec2>, start: f64, angle: f64) -> Result<Vec<RationalPatch>, SurfaceError> {
+    for (name, value) in [("the start angle", start), ("the angle", angle)] {
+        if !value.is_finite() || (name == "the angle" && value == 0.0) {
+            return Err(SurfaceError::Number { name, value });
         }
-        let bounds = profile.bounding_box();
-        if bounds.min.x < 0.0 && bounds.max.x > 0.0 && profile.points().iter().any(|p| p.x < 0.0) {
-            return Err(SurfaceError::Number { name: "the least distance from the axis", value: bounds.min.x });
-        }
-        let angle = angle.clamp(-TAU, TAU);
-        let full = angle.abs() == TAU;
-        let arcs = ((angle.abs() / FRAC_PI_2) - 1e-9).ceil().max(1.0) as usize;
-        let step = angle / arcs as f64;
-        // Directions are computed once, so that neighbours share them.
-        let direction = |k: usize| {
-            let k = if full && k == arcs { 0 } else { k };
-            let (sine, cosine) = sin_cos(start + step * k as f64);
-            Vec2::new(cosine, sine)
-        };
-        let mut patches = Vec::new();
-        for piece in profile.pieces() {
-            for k in 0..arcs {
-                patches.push(quarter(&piece.to_array(), direction(k), direction(k + 1), step));
-            }
-        }
-        Ok(patches)
     }
+    let bounds = profile.bounding_box();
+    if bounds.min.x < 0.0 && bounds.max.x > 0.0 && profile.points().iter().any(|p| p.x < 0.0) {
+        return Err(SurfaceError::Number { name: "the least distance from the axis", value: bounds.min.x });
+    }
+    let angle = angle.clamp(-TAU, TAU);
+    let full = angle.abs() == TAU;
+    let arcs = ((angle.abs() / FRAC_PI_2) - 1e-9).ceil().max(1.0) as usize;
+    let step = angle / arcs as f64;
+    // Directions are computed once, so that neighbours share them.
+    let direction = |k: usize| {
+        let k = if full && k == arcs { 0 } else { k };
+        let (sine, cosine) = sin_cos(start + step * k as f64);
+        Vec2::new(cosine, sine)
+    };
+    let mut patches = Vec::new();
+    for piece in profile.pieces() {
+        for k in 0..arcs {
+            patches.push(quarter(&piece.to_array(), direction(k), direction(k + 1), step));
+        }
+    }
+    Ok(patches)
 }
 
 /// The patch of a cubic turned from one direction to the next; the middle control point has the weight of half the cosine.
@@ -184,33 +177,27 @@ impl<C: Curve<Point = Vec3> + Sync> Surface for Coons<C> {
     }
 }
 
-/// The homogeneous point as one of space; kept here for those who look at the patches of a revolution.
-#[cfg(test)]
-fn eval(patch: &RationalPatch, u: f64, v: f64) -> Vec3 {
-    projected(super::net::eval(patch.homogeneous(), patch.degrees(), u, v))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::{AnyBezier, Cubic};
+    use crate::curve::{AnyBezier, Bernstein, Cubic};
 
     #[test]
     fn a_turned_line_is_a_cylinder_and_closes_to_the_bit() {
         let line = [0.0, 1.0, 2.0, 3.0].map(|y| Vec2::new(2.0, y));
         let profile = Spline::from_pieces(&[Cubic::new(line).unwrap()]).unwrap();
-        let patches = Revolution::patches(&profile, 0.3, TAU).unwrap();
+        let patches = revolution(&profile, 0.3, TAU).unwrap();
         assert_eq!(patches.len(), 4);
         for (index, patch) in patches.iter().enumerate() {
             for k in 0..=10 {
-                let p = eval(patch, 0.5, f64::from(k) / 10.0);
+                let p = patch.eval(0.5, f64::from(k) / 10.0);
                 assert!((p.truncate().length() - 2.0).abs() < 1e-14 && (p.z - 1.5).abs() < 1e-14);
             }
             let next = &patches[(index + 1) % 4];
             let (right, left) = (super::super::Side::Top, super::super::Side::Bottom);
             assert_eq!(patch.border_net(right), next.border_net(left));
         }
-        let backward = Revolution::patches(&profile, 0.0, -1.0).unwrap();
+        let backward = revolution(&profile, 0.0, -1.0).unwrap();
         assert_eq!(backward.len(), 1);
         assert!(backward[0].eval(0.0, 1.0).y < 0.0);
     }

@@ -1,8 +1,8 @@
 //! Profiles along curves.
 
 use super::{Gluing, Sides, Surface, SurfaceError};
-use crate::curve::{Curve, Frame, Spline, rotation_minimizing_frames};
-use crate::math::{Vec2, Vec3, sin_cos};
+use crate::curve::{Continuity, Curve, Frame, Spline, rotation_minimizing_frames};
+use crate::math::{Blend, Vec2, Vec3, sin_cos};
 use std::f64::consts::TAU;
 
 /// Frames along a curve that do not turn about it more than they must, and on closed curves meet again.
@@ -68,6 +68,7 @@ pub struct Sweep {
     frames: Frames,
     profile: Spline<Vec2>,
     scale: f64,
+    twist: f64,
 }
 
 impl Sweep {
@@ -81,7 +82,33 @@ impl Sweep {
             return Err(SurfaceError::Number { name: "scale", value: scale });
         }
         let twist = if path.is_closed() { (twist / TAU).round() * TAU } else { twist };
-        Ok(Sweep { frames: Frames::new(path, twist)?, profile, scale })
+        Ok(Sweep { frames: Frames::new(path, twist)?, profile, scale, twist })
+    }
+
+    /// The path.
+    pub fn path(&self) -> &Spline<Vec3> {
+        &self.frames.path
+    }
+
+    /// The profile.
+    pub fn profile(&self) -> &Spline<Vec2> {
+        &self.profile
+    }
+
+    /// The twist from start to end, in radians.
+    pub fn twist(&self) -> f64 {
+        self.twist
+    }
+
+    /// The size at the end over that at the start.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// No point is farther from the path than this.
+    pub fn reach(&self) -> f64 {
+        let farthest = self.profile.points().iter().map(|p| p.length()).fold(0.0, f64::max);
+        farthest * self.scale.max(1.0)
     }
 }
 
@@ -105,7 +132,7 @@ impl Surface for Sweep {
     }
 
     fn creases(&self) -> [Vec<f64>; 2] {
-        [inner(self.frames.path.knots()), inner(self.profile.knots())]
+        [corners(&self.frames.path), corners(&self.profile)]
     }
 }
 
@@ -127,6 +154,16 @@ impl Tube {
         }
         Ok(Tube { frames: Frames::new(path, 0.0)?, radius })
     }
+
+    /// The path.
+    pub fn path(&self) -> &Spline<Vec3> {
+        &self.frames.path
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
 }
 
 impl Surface for Tube {
@@ -146,11 +183,15 @@ impl Surface for Tube {
     }
 
     fn creases(&self) -> [Vec<f64>; 2] {
-        [inner(self.frames.path.knots()), Vec::new()]
+        [corners(&self.frames.path), Vec::new()]
     }
 }
 
-/// All but the first and the last.
-fn inner(knots: &[f64]) -> Vec<f64> {
-    knots[1..knots.len() - 1].to_vec()
+/// Knots where a spline has a corner.
+fn corners<P: Blend>(spline: &Spline<P>) -> Vec<f64> {
+    // A turn of the tangent by this much is rounding.
+    const SMOOTH: f64 = 1e-9;
+    let knots = spline.knots();
+    let is_corner = |k: &usize| spline.joint(*k).is_some_and(|joint| joint.misfit(Continuity::G1) > SMOOTH);
+    (1..knots.len() - 1).filter(is_corner).map(|k| knots[k]).collect()
 }
