@@ -1,6 +1,7 @@
 use super::input::{Kind, Source};
 use super::model::{self, Times};
 use super::output::{self, Output};
+use super::patches::{self, PatchArgs};
 use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
 use super::summary::{Form, Summary};
@@ -17,14 +18,16 @@ Examples:
   ogee build bracket.scad -o bracket.obj
   ogee build bracket.scad -o bracket.stl -o bracket.ply -D width=40 -D 'label=\"A\"'
   ogee build bracket.scad --summary json
+  ogee build teapot.bpt --tolerance 1e-3 -o teapot.obj
+  ogee build teapot.bpt --close -o teapot.stl
   ogee build - -o - --format off < bracket.scad > bracket.off";
 
-/// Make a mesh from a script
+/// Make a mesh from a script or a file of Bézier patches
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// The script; `-` reads it from standard input
-    #[arg(value_name = "IN.scad", value_hint = ValueHint::FilePath)]
+    /// The script or file of patches; `-` reads a script from standard input
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     input: PathBuf,
     /// Where to write the mesh, in the format of the ending; may be repeated; `-` is standard output
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath, required_unless_present = "summary")]
@@ -39,12 +42,15 @@ pub(super) struct Args {
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
+    patches: PatchArgs,
+    #[command(flatten, next_help_heading = "Scripts")]
     script: ScriptArgs,
 }
 
 /// What is meant by the arguments.
 struct Job {
     source: Source,
+    kind: Kind,
     outputs: Vec<Output>,
     summary: Option<Form>,
     strict: bool,
@@ -53,11 +59,15 @@ struct Job {
 impl Job {
     fn new(args: &Args) -> Result<Job, Stop> {
         let source = Source::typed(&args.input);
-        let hint = match source.kind() {
+        let kind = source.kind();
+        let hint = match kind {
             Ok(Kind::Mesh(_)) => Some("this is a mesh, not a script; see `ogee info` and `ogee boolean`"),
             Ok(Kind::Drawing) => Some("this is a drawing, not a script; see `ogee info` and `ogee plot`"),
             Ok(Kind::Table | Kind::Points) => Some("these are data, not a script; see `ogee plot`"),
-            Ok(Kind::Script) | Err(_) => None,
+            Ok(Kind::Script) if args.patches.is_given() => {
+                Some("--tolerance, --angle, --measured, --close and --thickness are for files of patches; a script has $fe")
+            }
+            Ok(Kind::Script | Kind::Patches) | Err(_) => None,
         };
         if let Some(hint) = hint {
             return Err(Stop::about(source, hint));
@@ -66,7 +76,9 @@ impl Job {
         if args.summary.is_some() && outputs.iter().any(|output| output.name().is_none()) {
             return Err(Stop::Usage("-o - and --summary both want standard output".to_owned()));
         }
-        Ok(Job { source, outputs, summary: args.summary, strict: args.strict })
+        // A file that is not there is explained where it is read.
+        let kind = kind.unwrap_or(Kind::Script);
+        Ok(Job { source, kind, outputs, summary: args.summary, strict: args.strict })
     }
 }
 
@@ -75,6 +87,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let mut times = Times::default();
     let mut summary = Summary::default();
     summary.row("input", job.source.to_string());
+    if job.kind == Kind::Patches {
+        return build_patches(&job, args, times, summary, terminal);
+    }
     let built = model::build(&job.source, &args.script, job.strict, &mut times, terminal)?;
     match built.shape {
         Shape::Solid(solid) => write_solid(&job, &solid, &mut times, &mut summary, terminal)?,
@@ -87,6 +102,34 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let [warnings, echoes] = terminal.counts();
     summary.row("warnings", warnings).row("echoes", echoes);
     summary.report(&built.report).row("seconds", times.rows());
+    match job.summary {
+        Some(form) => print(&summary.print(form)),
+        None => Ok(()),
+    }
+}
+
+/// The patches of a file made a mesh, which is open unless it was asked to be closed.
+fn build_patches(
+    job: &Job,
+    args: &Args,
+    mut times: Times,
+    mut summary: Summary,
+    terminal: &Terminal,
+) -> Result<(), Stop> {
+    let read = times.stage(terminal, "read", "reading", || patches::read(&job.source))?;
+    let made = times.stage(terminal, "build", "tessellating", || {
+        args.patches.make(&job.source, read, &args.script.build_options())
+    })?;
+    let measures = times.stage(terminal, "measure", "measuring", || Measures::of(made.mesh()));
+    if job.strict && !measures.closed {
+        return Err(Stop::NotClosed(format!("{}: the result is not closed", job.source)));
+    }
+    times.stage(terminal, "write", "writing", || made.write(&job.outputs))?;
+    for name in job.outputs.iter().filter_map(Output::name) {
+        terminal.note(format_args!("{name}: {}", in_short(&measures, &times)));
+    }
+    made.describe(&mut summary);
+    summary.row("seconds", times.rows());
     match job.summary {
         Some(form) => print(&summary.print(form)),
         None => Ok(()),

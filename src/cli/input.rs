@@ -32,11 +32,18 @@ pub(super) enum Kind {
     Table,
     /// Lists of points in JSON.
     Points,
+    /// Bézier patches.
+    Patches,
 }
 
-/// Endings of files that hold plane things.
-const FLAT: [(&str, Kind); 4] =
-    [("svg", Kind::Drawing), ("csv", Kind::Table), ("tsv", Kind::Table), ("json", Kind::Points)];
+/// Endings of files that hold neither scripts nor meshes.
+const OTHERS: [(&str, Kind); 5] = [
+    ("svg", Kind::Drawing),
+    ("csv", Kind::Table),
+    ("tsv", Kind::Table),
+    ("json", Kind::Points),
+    ("bpt", Kind::Patches),
+];
 
 impl Source {
     /// What was typed, meant.
@@ -54,8 +61,8 @@ impl Source {
         if let Some(format) = Format::from_ending(&ending) {
             return Ok(Kind::Mesh(format));
         }
-        let flat = FLAT.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
-        if let Some(&(_, kind)) = flat {
+        let other = OTHERS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
+        if let Some(&(_, kind)) = other {
             return Ok(kind);
         }
         let reason = check_file(path).err().unwrap_or_else(|| format!("unknown ending; {}", endings()));
@@ -98,7 +105,7 @@ impl fmt::Display for Source {
 
 /// The endings that are understood, as a sentence.
 pub(super) fn endings() -> String {
-    format!("scripts end in .scad, meshes in {}, drawings in .svg", mesh_endings())
+    format!("scripts end in .scad, meshes in {}, drawings in .svg, patches in .bpt", mesh_endings())
 }
 
 /// The endings of mesh files, as a list.
@@ -165,7 +172,7 @@ mod tests {
         assert_eq!(kind("a.SCAD").unwrap(), Kind::Script);
         assert_eq!(kind("-").unwrap(), Kind::Script);
         assert_eq!(kind("dir.scad/a.Stl").unwrap(), Kind::Mesh(Format::StlBinary));
-        let unknown = "Cargo.toml: unknown ending; scripts end in .scad, meshes in .obj, .stl, .off, .ply, drawings in .svg";
+        let unknown = "Cargo.toml: unknown ending; scripts end in .scad, meshes in .obj, .stl, .off, .ply, drawings in .svg, patches in .bpt";
         assert_eq!(kind("Cargo.toml").unwrap_err().text(), Some(unknown));
         assert_eq!(kind("src").unwrap_err().text(), Some("src: this is a folder, not a file"));
         assert_eq!(kind("a.step").unwrap_err().text(), Some("a.step: there is no such file"));

@@ -14,6 +14,7 @@ mod info;
 mod input;
 mod model;
 mod output;
+mod patches;
 mod plot;
 mod render;
 mod settings;

@@ -20,6 +20,7 @@
 //! # Ok::<(), ogee::surface::SurfaceError>(())
 //! ```
 
+mod area;
 mod b_spline;
 mod classic;
 mod formula;
@@ -36,6 +37,7 @@ mod sides;
 mod skin;
 mod sweep;
 
+pub use area::area;
 pub use b_spline::from_b_spline;
 pub use classic::Classic;
 pub use formula::Formula;

@@ -52,6 +52,7 @@ impl Drawn {
             Kind::Table => times.stage(terminal, "read", "reading", || table(args, source))?,
             Kind::Points => times.stage(terminal, "read", "reading", || points(args, source))?,
             Kind::Mesh(_) => return Err(Stop::about(source, "this is a mesh; `ogee render` draws it")),
+            Kind::Patches => return Err(Stop::about(source, "these are patches; `ogee render` draws them")),
         };
         if drawn.layers.is_empty() {
             return Err(Stop::about(source, "there is nothing to draw in it"));

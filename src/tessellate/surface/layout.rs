@@ -1,6 +1,6 @@
 //! What belongs together: pieces, their edges and corners.
 
-use super::{Precision, SurfaceOptions, TessellationError};
+use super::{EdgeCounts, Precision, SurfaceOptions, TessellationError};
 use crate::math::{Aabb, Vec3, Vec4};
 use crate::numeric::DisjointSets;
 use crate::surface::{Gluing, Patch, RationalPatch, Side, Surface};
@@ -130,10 +130,13 @@ impl<'a> Layout<'a> {
         if self.edges.iter().any(|edge| edge.uses > 2) { usize::MAX } else { 0 }
     }
 
-    /// Number of edges that are used once, and of all, those that are points left out.
-    pub(super) fn edge_counts(&self) -> [usize; 2] {
+    pub(super) fn edge_counts(&self) -> EdgeCounts {
         let real = || self.edges.iter().filter(|edge| !edge.pole);
-        [real().filter(|edge| edge.uses == 1).count(), real().count()]
+        EdgeCounts {
+            all: real().count(),
+            used_once: real().filter(|edge| edge.uses == 1).count(),
+            collapsed: self.edges.iter().filter(|edge| edge.pole).map(|edge| edge.uses).sum(),
+        }
     }
 }
 

@@ -23,7 +23,7 @@ mod table;
 mod thicken;
 
 pub use caps::{CloseError, capped};
-pub use patches::patches;
+pub use patches::{patch_edges, patches};
 pub use thicken::thickened;
 
 use crate::math::Vec3;
@@ -125,10 +125,19 @@ pub struct Tessellation {
     pub parameters: Vec<[[f64; 2]; 3]>,
     /// How far mesh and surfaces are apart.
     pub error: Achieved,
-    /// Number of edges: of one surface only, all.
-    pub edges: [usize; 2],
-    /// Number of edges that are a single point.
-    pub poles: usize,
+    /// How the surfaces are joined.
+    pub edges: EdgeCounts,
+}
+
+/// How surfaces are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeCounts {
+    /// Edges, each once, but for those that are a single point.
+    pub all: usize,
+    /// Those of one side only.
+    pub used_once: usize,
+    /// Sides that are a single point.
+    pub collapsed: usize,
 }
 
 /// How far a mesh and a surface are apart.
@@ -265,7 +274,6 @@ fn attempt(
         parameters: Vec::new(),
         error: Achieved { bound: Some(0.0), measured: 0.0 },
         edges: layout.edge_counts(),
-        poles: layout.edges.iter().filter(|edge| edge.pole).count(),
     };
     for (piece, made) in layout.pieces.iter().zip(made) {
         append(&mut tessellation, piece.surface as u32, made?);

@@ -1,4 +1,5 @@
-use super::{Achieved, SurfaceOptions, Tessellation, TessellationError, surfaces};
+use super::layout::Layout;
+use super::{Achieved, EdgeCounts, SurfaceOptions, Tessellation, TessellationError, surfaces};
 use crate::math::power_of_two_below;
 use crate::surface::{Patch, Surface};
 
@@ -37,6 +38,14 @@ pub fn patches(patches: &[Patch], options: &SurfaceOptions) -> Result<Tessellati
     let Achieved { bound, measured } = made.error;
     made.error = Achieved { bound: bound.map(|bound| bound * power), measured: measured * power };
     Ok(made)
+}
+
+/// How patches are joined by equal borders.
+///
+/// # Errors
+/// [`TessellationError::NotFinite`].
+pub fn patch_edges(patches: &[Patch]) -> Result<EdgeCounts, TessellationError> {
+    Ok(Layout::new(&borrowed(patches))?.edge_counts())
 }
 
 fn borrowed(patches: &[Patch]) -> Vec<&dyn Surface> {
