@@ -64,9 +64,9 @@ impl Job {
             Ok(Kind::Mesh(_)) => Some("this is a mesh, not a script; see `ogee info` and `ogee boolean`"),
             Ok(Kind::Drawing) => Some("this is a drawing, not a script; see `ogee info` and `ogee plot`"),
             Ok(Kind::Table | Kind::Points) => Some("these are data, not a script; see `ogee plot`"),
-            Ok(Kind::Script) if args.patches.is_given() => {
-                Some("--tolerance, --angle, --measured, --close and --thickness are for files of patches; a script has $fe")
-            }
+            Ok(Kind::Script) if args.patches.is_given() => Some(
+                "--tolerance, --angle, --measured, --close and --thickness are for files of patches; a script has $fe",
+            ),
             Ok(Kind::Script | Kind::Patches) | Err(_) => None,
         };
         if let Some(hint) = hint {

@@ -53,11 +53,7 @@ pub(super) fn write(outputs: &[Output], mesh: &Mesh) -> Result<(), Stop> {
 }
 
 /// [`write`] with a normal for every corner, for the formats that have them.
-pub(super) fn write_with(
-    outputs: &[Output],
-    mesh: &Mesh,
-    normals: Option<&[[Vec3; 3]]>,
-) -> Result<(), Stop> {
+pub(super) fn write_with(outputs: &[Output], mesh: &Mesh, normals: Option<&[[Vec3; 3]]>) -> Result<(), Stop> {
     let fill = |format: Format, out: &mut dyn Write| match (format, normals) {
         (Format::Obj, Some(normals)) => obj::write_with_normals(mesh, normals, out),
         (format, _) => write_mesh(format, mesh, out),

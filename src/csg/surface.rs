@@ -6,7 +6,9 @@ use crate::math::{Aabb, Blend, Vec2, Vec3};
 use crate::mesh::Mesh;
 use crate::numeric::ContentHasher;
 use crate::surface::{Patch, RationalPatch, Surface, SurfaceError, Sweep, Tube, revolution};
-use crate::tessellate::{CloseError, SurfaceOptions, TessellationError, capped, patches, surface, surfaces, thickened};
+use crate::tessellate::{
+    CloseError, SurfaceOptions, TessellationError, capped, patches, surface, surfaces, thickened,
+};
 
 /// A surface that bounds a solid: its boundary loops are capped, or it is given a thickness.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +49,10 @@ impl SurfaceBody {
             Explicit::Patches(list) => patches(list, &options),
             Explicit::Revolution { profile, start, angle } => {
                 let turned = revolution(profile, *start, *angle)?;
-                surfaces(&turned.iter().map(|patch: &RationalPatch| patch as &dyn Surface).collect::<Vec<_>>(), &options)
+                surfaces(
+                    &turned.iter().map(|patch: &RationalPatch| patch as &dyn Surface).collect::<Vec<_>>(),
+                    &options,
+                )
             }
             Explicit::Sweep(sweep) => surface(&**sweep, &options),
             Explicit::Tube(tube) => surface(&**tube, &options),
@@ -72,9 +77,7 @@ impl SurfaceBody {
                     max: Vec3::new(reach, reach, heights().fold(f64::NEG_INFINITY, f64::max)),
                 }
             }
-            Explicit::Sweep(sweep) => {
-                widened(Aabb::of(sweep.path().points().iter().copied()), sweep.reach())
-            }
+            Explicit::Sweep(sweep) => widened(Aabb::of(sweep.path().points().iter().copied()), sweep.reach()),
             Explicit::Tube(tube) => widened(Aabb::of(tube.path().points().iter().copied()), tube.radius()),
         };
         // Rounding of the frames, and of the points.

@@ -45,9 +45,8 @@ fn patch(words: &mut Words<'_>, size: usize) -> Result<Patch, ReadError> {
     };
     let degrees = [degree()?, degree()?];
     let line = words.line();
-    let refuse = |error: SurfaceError| {
-        ReadError::line(line, Problem::Malformed { reason: error.to_string() })
-    };
+    let refuse =
+        |error: SurfaceError| ReadError::line(line, Problem::Malformed { reason: error.to_string() });
     crate::surface::check_degrees(degrees).map_err(refuse)?;
     let count = (degrees[0] + 1) * (degrees[1] + 1);
     let mut points = Vec::with_capacity(count.min(size));
@@ -126,7 +125,10 @@ mod tests {
             ("1\n1 0\n1 2 3\n1 2 z\n", "line 4: expected three coordinates, found `z`"),
             ("1\n0 0\n1 2 nan\n", "line 3: coordinates leave the range of numbers"),
             ("1\n0 0\n1 2 3\n4", "line 4: expected the end of the file after the last patch, found `4`"),
-            ("18446744073709551615\n18446744073709551615 0\n", "line 2: degree 18446744073709551615 where 200 is the highest"),
+            (
+                "18446744073709551615\n18446744073709551615 0\n",
+                "line 2: degree 18446744073709551615 where 200 is the highest",
+            ),
         ];
         for (text, expected) in cases {
             assert_eq!(read(text.as_bytes()).unwrap_err().to_string(), expected, "{text}");

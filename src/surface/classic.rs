@@ -144,7 +144,8 @@ impl Surface for Classic {
             Classic::Sphere { radius } => ellipsoid([radius; 3], u, v),
             Classic::Ellipsoid { radii } => ellipsoid(radii, u, v),
             Classic::Superellipsoid { radii: [a, b, c], exponents: [n, e] } => {
-                let ([out, up], [x, y]) = (latitude(v).map(|t| signed_power(t, n)), turn(u).map(|t| signed_power(t, e)));
+                let ([out, up], [x, y]) =
+                    (latitude(v).map(|t| signed_power(t, n)), turn(u).map(|t| signed_power(t, e)));
                 Vec3::new(a * out * x, b * out * y, c * up)
             }
             Classic::Cylinder { radius, height } => {

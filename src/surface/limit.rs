@@ -1,13 +1,17 @@
 //! Normals where the derivatives by u and v do not give one.
 
+use super::Surface;
 use super::jet::unit_cross;
 use super::net::{self, Degrees};
-use super::Surface;
 use crate::math::Vec3;
 
 /// The normal of the jet, or its limit from inside the domain.
 pub(super) fn normal<S: Surface + ?Sized>(surface: &S, u: f64, v: f64) -> Option<Vec3> {
-    surface.jet(u, v).normal().filter(|_| !nearly_singular(surface, u, v)).or_else(|| from_inside(surface, u, v))
+    surface
+        .jet(u, v)
+        .normal()
+        .filter(|_| !nearly_singular(surface, u, v))
+        .or_else(|| from_inside(surface, u, v))
 }
 
 /// Whether a derivative is so small against its like inside that it is mostly error.

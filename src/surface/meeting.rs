@@ -44,7 +44,11 @@ pub fn ray_hits(patch: &Patch, origin: Vec3, direction: Vec3) -> Result<Vec<Hit>
     let off: Vec<Vec2> =
         patch.points().iter().map(|&p| Vec2::new((p - origin).dot(a), (p - origin).dot(b))).collect();
     // Rounding of the control values.
-    let size = patch.points().iter().map(|p| (*p - origin).abs().max_element()).fold(origin.abs().max_element(), f64::max);
+    let size = patch
+        .points()
+        .iter()
+        .map(|p| (*p - origin).abs().max_element())
+        .fold(origin.abs().max_element(), f64::max);
     let slack = 64.0 * f64::EPSILON * size;
     let mut found: Vec<([f64; 2], bool)> = Vec::new();
     let mut pending = vec![(off, [[0.0, 1.0]; 2])];

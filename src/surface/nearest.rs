@@ -168,7 +168,10 @@ fn polished(patch: &Patch, point: Vec3, start: [f64; 2]) -> Nearest {
         let step = if descends && newton[0].is_finite() && newton[1].is_finite() {
             newton
         } else {
-            [a / jet.du.length_squared().max(f64::MIN_POSITIVE), b / jet.dv.length_squared().max(f64::MIN_POSITIVE)]
+            [
+                a / jet.du.length_squared().max(f64::MIN_POSITIVE),
+                b / jet.dv.length_squared().max(f64::MIN_POSITIVE),
+            ]
         };
         let Some((next, place)) = shortened(patch, point, at, step, here) else { break };
         (at, here) = (next, place);
@@ -178,7 +181,13 @@ fn polished(patch: &Patch, point: Vec3, start: [f64; 2]) -> Nearest {
 }
 
 /// The first of a step and its halves that comes nearer.
-fn shortened(patch: &Patch, point: Vec3, at: [f64; 2], step: [f64; 2], here: Vec3) -> Option<([f64; 2], Vec3)> {
+fn shortened(
+    patch: &Patch,
+    point: Vec3,
+    at: [f64; 2],
+    step: [f64; 2],
+    here: Vec3,
+) -> Option<([f64; 2], Vec3)> {
     let old = (here - point).length_squared();
     let mut size = 1.0;
     for _ in 0..30 {

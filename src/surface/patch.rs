@@ -1,5 +1,6 @@
 use super::net::{self, Degrees};
 use super::{Jet, Side, Surface, SurfaceError, grid, limit};
+use crate::curve::evaluate::de_casteljau;
 use crate::curve::{AnyBezier, bounding_box};
 use crate::math::{Aabb, Vec3, Vec4};
 
@@ -91,7 +92,8 @@ impl Patch {
             return Err(SurfaceError::Parameter { value: t });
         }
         let part = |range: [f64; 2]| {
-            let mut points = if net::size(&self.points) > HUGE { self.quartered().points } else { self.points.clone() };
+            let mut points =
+                if net::size(&self.points) > HUGE { self.quartered().points } else { self.points.clone() };
             if range[0] == range[1] {
                 net::flatten_onto(&mut points, self.degrees, axis, t);
             } else {
@@ -158,9 +160,12 @@ impl Patch {
         if !t.is_finite() {
             return Err(SurfaceError::Parameter { value: t });
         }
-        let columns = if axis == 0 { net::transposed(&self.points, self.degrees) } else { self.points.clone() };
-        let length = self.degrees[1 - axis.min(1)] * usize::from(axis != 0) + self.degrees[0] * usize::from(axis == 0) + 1;
-        let points = columns.chunks_exact(length).map(|line| crate::curve::evaluate::de_casteljau(line, t));
+        // Lines along the fixed parameter, each of which gives a point of the curve.
+        let (lines, length) = match axis {
+            0 => (net::transposed(&self.points, self.degrees), self.degrees[0] + 1),
+            _ => (self.points.clone(), self.degrees[1] + 1),
+        };
+        let points = lines.chunks_exact(length).map(|line| de_casteljau(line, t));
         Ok(AnyBezier::new(points.collect())?)
     }
 
@@ -194,7 +199,8 @@ impl Patch {
         let mut pending = vec![self.clone()];
         while let Some(part) = pending.pop() {
             let hull = part.hull_box();
-            let inside = (outer.min - tolerance).cmple(hull.min).all() && hull.max.cmple(outer.max + tolerance).all();
+            let inside =
+                (outer.min - tolerance).cmple(hull.min).all() && hull.max.cmple(outer.max + tolerance).all();
             if inside {
                 sure = sure.union(hull);
                 continue;

@@ -12,7 +12,11 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 ///
 /// # Errors
 /// [`SurfaceError::Number`] for angles that are not finite or zero, and for a profile on both sides of the axis.
-pub fn revolution(profile: &Spline<Vec2>, start: f64, angle: f64) -> Result<Vec<RationalPatch>, SurfaceError> {
+pub fn revolution(
+    profile: &Spline<Vec2>,
+    start: f64,
+    angle: f64,
+) -> Result<Vec<RationalPatch>, SurfaceError> {
     for (name, value) in [("the start angle", start), ("the angle", angle)] {
         if !value.is_finite() || (name == "the angle" && value == 0.0) {
             return Err(SurfaceError::Number { name, value });
@@ -48,9 +52,8 @@ fn quarter(profile: &[Vec2; 4], from: Vec2, to: Vec2, step: f64) -> RationalPatc
     let corner = (from + to) / (2.0 * weight * weight);
     let mut points = Vec::with_capacity(12);
     for p in profile {
-        let at = |direction: Vec2, w: f64| {
-            Vec4::new(w * p.x * direction.x, w * p.x * direction.y, w * p.y, w)
-        };
+        let at =
+            |direction: Vec2, w: f64| Vec4::new(w * p.x * direction.x, w * p.x * direction.y, w * p.y, w);
         points.extend([at(from, 1.0), at(corner, weight), at(to, 1.0)]);
     }
     RationalPatch::assume([3, 2], points)

@@ -77,7 +77,12 @@ impl Sweep {
     ///
     /// # Errors
     /// [`SurfaceError::Curve`] where the path stands still, [`SurfaceError::Number`] for a twist or scale out of range.
-    pub fn new(path: Spline<Vec3>, profile: Spline<Vec2>, twist: f64, scale: f64) -> Result<Sweep, SurfaceError> {
+    pub fn new(
+        path: Spline<Vec3>,
+        profile: Spline<Vec2>,
+        twist: f64,
+        scale: f64,
+    ) -> Result<Sweep, SurfaceError> {
         if !(scale > 0.0 && scale.is_finite()) || (path.is_closed() && scale != 1.0) {
             return Err(SurfaceError::Number { name: "scale", value: scale });
         }

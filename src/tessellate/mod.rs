@@ -10,8 +10,8 @@ pub use extrude::{LinearSweep, linear_extrude};
 pub use flatten::{Flattened, flatten, flatten_spline};
 pub use revolve::{RotateSweep, rotate_extrude};
 pub use surface::{
-    Achieved, CloseError, EdgeCounts, Guarantee, Precision, SurfaceOptions, Tessellation, TessellationError, View, capped,
-    patch_edges, patches, surface, surfaces, thickened,
+    Achieved, CloseError, EdgeCounts, Guarantee, Precision, SurfaceOptions, Tessellation, TessellationError,
+    View, capped, patch_edges, patches, surface, surfaces, thickened,
 };
 
 use crate::mesh::TooLarge;

@@ -272,15 +272,16 @@ pub(super) fn spline_of<P: Blend>(
         Points::Flat(points) => components_of(&points),
         Points::Space(points) => components_of(&points),
     };
-    let points: Vec<P> = points.ok_or_else(|| {
-        Fault::Undefined(format!("the points must have {} coordinates", P::DIMENSION))
-    })?;
+    let points: Vec<P> = points
+        .ok_or_else(|| Fault::Undefined(format!("the points must have {} coordinates", P::DIMENSION)))?;
     let explained = |error: CurveError| Fault::Undefined(error.to_string());
     let points = if kind == Kind::Line { apart(&points, closed) } else { points };
     let mut cubics = Vec::new();
     for piece in pieces(&points, &kind, closed, budget)? {
         if piece.degree() > 3 {
-            return undefined("a solid is made of curves of degree 3 at most; degree = 3 makes a chain of cubics");
+            return undefined(
+                "a solid is made of curves of degree 3 at most; degree = 3 makes a chain of cubics",
+            );
         }
         let raised = piece.elevated(3 - piece.degree());
         let four = [0, 1, 2, 3].map(|k: usize| raised.points()[k]);

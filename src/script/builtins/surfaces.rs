@@ -39,7 +39,18 @@ pub(super) const TABLE: &[Builtin] = &[
     ),
     module_row(
         "sweep",
-        &["path", "profile", "twist", "scale", "closed", "kind", "profile_kind", "degree", "thickness", "tolerance"],
+        &[
+            "path",
+            "profile",
+            "twist",
+            "scale",
+            "closed",
+            "kind",
+            "profile_kind",
+            "degree",
+            "thickness",
+            "tolerance",
+        ],
         2,
         "A closed profile along a curve, turned by twist and scaled on its way; ends are capped.",
         sweep,
@@ -69,7 +80,8 @@ fn bezier_patch<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Res
 }
 
 fn bezier_surface<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Made, Failure> {
-    if call.arguments.get("close").is_some_and(|close| !close.is_true()) && call.arguments.get("thickness").is_none()
+    if call.arguments.get("close").is_some_and(|close| !close.is_true())
+        && call.arguments.get("thickness").is_none()
     {
         return refused(machine, call, "a surface that is not closed needs a thickness to be a solid");
     }
@@ -218,7 +230,8 @@ fn patch(value: &Value) -> Result<Patch, String> {
             points.push(point.ok_or("a control point is three numbers")?);
         }
     }
-    let (Some(height), Some(width)) = (rows.len().checked_sub(1), width.and_then(|w| w.checked_sub(1))) else {
+    let (Some(height), Some(width)) = (rows.len().checked_sub(1), width.and_then(|w| w.checked_sub(1)))
+    else {
         return Err("a patch has at least one point".to_owned());
     };
     Patch::new([height, width], points).map_err(|error: SurfaceError| error.to_string())

@@ -28,7 +28,9 @@ impl fmt::Display for CloseError {
                 let list: Vec<String> = wrong.map(|(name, count)| format!("{count} {name}")).collect();
                 write!(f, "the surface is not a manifold: {}", list.join(", "))
             }
-            CloseError::OneSided => f.write_str("a part of the surface has only one side and encloses nothing"),
+            CloseError::OneSided => {
+                f.write_str("a part of the surface has only one side and encloses nothing")
+            }
             CloseError::Tessellation(error) => error.fmt(f),
         }
     }

@@ -77,30 +77,57 @@ const PLACES: [[f64; 3]; 7] = [
     [0.2, 0.2, 0.6],
 ];
 
-/// The largest distance found between a triangle and its part of the surface: of places of the triangle from a point of
-/// the surface that a Newton step brings near. Those points cover the surface as the places cover the mesh, so it is the
+/// The largest distance found between a triangle and its part of the surface: of places of the triangle from points of
+/// the surface that Newton steps bring near. Those points cover the surface as the places cover the mesh, so it is the
 /// distance both ways.
 pub(super) fn measure(surface: &dyn Surface, parameters: &[[f64; 2]; 3], corners: [Vec3; 3]) -> f64 {
     let domain = surface.domain();
     let mut most: f64 = 0.0;
     for weights in PLACES {
-        let [u, v] = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>());
-        let flat: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
-        let jet = surface.jet(u, v);
-        let off = flat - jet.point;
-        let straight = off.length();
-        let [e, f, g] = jet.first_form();
-        let determinant = e * g - f * f;
-        let (a, b) = (off.dot(jet.du), off.dot(jet.dv));
-        let moved = [u + (g * a - f * b) / determinant, v + (e * b - f * a) / determinant];
-        let near = if moved[0].is_finite() && moved[1].is_finite() {
-            let at = [0, 1].map(|axis: usize| moved[axis].clamp(domain[axis][0], domain[axis][1]));
-            (flat - surface.point(at[0], at[1])).length().min(straight)
-        } else {
-            straight
-        };
+        let start = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>());
+        let place: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
+        let near = distance_from(surface, domain, place, start);
         // NaN must not pass for small.
         most = if near <= most { most } else { near };
     }
     most
+}
+
+/// The distance of a place from the surface near some parameters: Gauss-Newton steps inside the domain as long as they
+/// bring it much nearer.
+fn distance_from(surface: &dyn Surface, domain: [[f64; 2]; 2], place: Vec3, start: [f64; 2]) -> f64 {
+    const STEPS: usize = 12;
+    const MUCH: f64 = 0.9;
+    let mut at = start;
+    let mut jet = surface.jet(at[0], at[1]);
+    let mut distance = (place - jet.point).length();
+    for _ in 0..STEPS {
+        let off = place - jet.point;
+        let [e, f, g] = jet.first_form();
+        let (a, b) = (off.dot(jet.du), off.dot(jet.dv));
+        let determinant = e * g - f * f;
+        let clamped = |axis: usize, t: f64| t.clamp(domain[axis][0], domain[axis][1]);
+        let free = [at[0] + (g * a - f * b) / determinant, at[1] + (e * b - f * a) / determinant];
+        if !(free[0].is_finite() && free[1].is_finite()) {
+            break;
+        }
+        let mut next = [clamped(0, free[0]), clamped(1, free[1])];
+        // On a side of the domain the best is along it.
+        if next[0] != free[0] && next[1] == free[1] && g > 0.0 {
+            next[1] = clamped(1, at[1] + (b - f * (next[0] - at[0])) / g);
+        } else if next[1] != free[1] && next[0] == free[0] && e > 0.0 {
+            next[0] = clamped(0, at[0] + (a - f * (next[1] - at[1])) / e);
+        }
+        let new = surface.jet(next[0], next[1]);
+        let nearer = (place - new.point).length();
+        if !(nearer < distance) {
+            break;
+        }
+        let enough = nearer > MUCH * distance;
+        (at, jet, distance) = (next, new, nearer);
+        if enough {
+            break;
+        }
+    }
+    distance
 }

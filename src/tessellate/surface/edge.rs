@@ -58,8 +58,7 @@ pub(super) fn sample_all(
         let edge = &layout.edges[index];
         if edge.pole { Ok(Vec::new()) } else { sample(&edge.curve, options, least_of[index]) }
     });
-    let mut edges =
-        Edges { positions: layout.corners.clone(), parameters: Vec::new(), first: Vec::new() };
+    let mut edges = Edges { positions: layout.corners.clone(), parameters: Vec::new(), first: Vec::new() };
     for (edge, parameters) in layout.edges.iter().zip(sampled) {
         let parameters = parameters?;
         edges.first.push(edges.positions.len() as u32);
@@ -97,7 +96,9 @@ fn sample(curve: &Curve<'_>, options: &SurfaceOptions, least: usize) -> Result<V
     let [low, high] = curve.range;
     let at = |share: f64| if share >= 1.0 { high } else { low + share * (high - low) };
     let intervals: Vec<Interval> = (0..INTERVALS)
-        .map(|k| interval(curve, options, [at(k as f64 / INTERVALS as f64), at((k + 1) as f64 / INTERVALS as f64)]))
+        .map(|k| {
+            interval(curve, options, [at(k as f64 / INTERVALS as f64), at((k + 1) as f64 / INTERVALS as f64)])
+        })
         .collect();
     let width = (high - low) / INTERVALS as f64;
     let total: f64 = intervals.iter().map(|interval| interval.density * width).sum();

@@ -168,7 +168,11 @@ impl<'a> Builder<'a> {
     }
 
     /// A slot for each crossing of lines, joined where sides lie together.
-    fn corner_slots(&mut self, index: usize, lines: &[Vec<f64>; 2]) -> Result<Vec<Vec<Slot>>, TessellationError> {
+    fn corner_slots(
+        &mut self,
+        index: usize,
+        lines: &[Vec<f64>; 2],
+    ) -> Result<Vec<Vec<Slot>>, TessellationError> {
         let surface = self.layout.surfaces[index];
         let mut slots = Vec::new();
         for &u in &lines[0] {
@@ -247,7 +251,14 @@ impl<'a> Builder<'a> {
         EdgeUse { edge: made.edge, reversed: made.reversed != reversed }
     }
 
-    fn new_edge(&mut self, grid: &Grid, axis: usize, along: usize, line: usize, counts: [usize; 2]) -> EdgeUse {
+    fn new_edge(
+        &mut self,
+        grid: &Grid,
+        axis: usize,
+        along: usize,
+        line: usize,
+        counts: [usize; 2],
+    ) -> EdgeUse {
         let surface = self.layout.surfaces[grid.index];
         let slot = |k: usize| if axis == 0 { grid.slots[k][line] } else { grid.slots[line][k] };
         let ends = [slot(along), slot(along + 1)];
@@ -291,7 +302,12 @@ impl<'a> Builder<'a> {
         let ends = if reversed { [ends[1], ends[0]] } else { ends };
         let points: Vec<Vec3> = oriented.iter().map(|p| p.truncate() / p.w).collect();
         let pole = points.iter().all(|point| *point == points[0]);
-        let curve = Curve { surface: Carrier::Own(ribbon(&oriented, points)), axis: 0, fixed: 0.0, range: [0.0, 1.0] };
+        let curve = Curve {
+            surface: Carrier::Own(ribbon(&oriented, points)),
+            axis: 0,
+            fixed: 0.0,
+            range: [0.0, 1.0],
+        };
         self.layout.edges.push(Edge { curve, ends, pole, uses: 1 });
         self.nets.insert(key, self.layout.edges.len() - 1);
         EdgeUse { edge: self.layout.edges.len() - 1, reversed }

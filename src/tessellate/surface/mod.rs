@@ -96,20 +96,16 @@ impl Precision {
     fn at(&self, point: Vec3) -> f64 {
         match *self {
             Precision::Distance(tolerance) => tolerance,
-            Precision::View(view) => {
-                view.pixels * view.pixel * (point - view.eye).length().max(view.nearest)
-            }
+            Precision::View(view) => view.pixels * view.pixel * (point - view.eye).length().max(view.nearest),
         }
     }
 
     fn scaled(self, factor: f64) -> Precision {
         match self {
             Precision::Distance(tolerance) => Precision::Distance(tolerance * factor),
-            Precision::View(view) => Precision::View(View {
-                eye: view.eye * factor,
-                nearest: view.nearest * factor,
-                ..view
-            }),
+            Precision::View(view) => {
+                Precision::View(View { eye: view.eye * factor, nearest: view.nearest * factor, ..view })
+            }
         }
     }
 }
@@ -192,7 +188,9 @@ pub enum TessellationError {
 impl fmt::Display for TessellationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            TessellationError::Option { name, value } => write!(f, "{name} of {value} is not a positive number"),
+            TessellationError::Option { name, value } => {
+                write!(f, "{name} of {value} is not a positive number")
+            }
             TessellationError::ToleranceTooFine { value, finest } => {
                 write!(f, "a tolerance of {value} is below the rounding of this surface, about {finest}")
             }
@@ -200,7 +198,10 @@ impl fmt::Display for TessellationError {
                 write!(f, "surface {surface} is not finite at u = {u}, v = {v}")
             }
             TessellationError::NotReached { surface, parameters: [u, v] } => {
-                write!(f, "surface {surface} cannot be followed at u = {u}, v = {v}: it has a tear or a cusp there")
+                write!(
+                    f,
+                    "surface {surface} cannot be followed at u = {u}, v = {v}: it has a tear or a cusp there"
+                )
             }
             TessellationError::TooLarge { triangles, most } => {
                 write!(f, "{triangles} triangles or more, where {most} are allowed")

@@ -77,39 +77,32 @@ pub(super) fn tessellate(
 /// The vertices of the sides, and each side from its smaller parameter on. Corners are one vertex for both of their
 /// sides; the two sides of a seam have different vertices here, since their parameters differ.
 fn border(layout: &Layout<'_>, piece: &Piece, edges: &Edges) -> (Vec<Node>, [Vec<Local>; 4]) {
-    let is_pole = |side: Side| layout.edges[piece.edges[side as usize].edge].pole;
     let mut nodes: Vec<Node> = Vec::new();
-    let mut sides = [const { Vec::new() }; 4];
-    for side in Side::ALL {
-        let vertices = edges.side(layout, piece.edges[side as usize], piece.domain[side.axis()]);
-        for (index, &(id, t)) in vertices.iter().enumerate() {
-            let free = is_pole(side).then_some(side.axis());
-            nodes.push(Node { shared: Some(id), at: side.at(piece.domain, t), free });
-            let local = nodes.len() as Local - 1;
-            sides[side as usize].push(local);
-            // Left and right begin and end where bottom and top do.
-            if side.axis() == 1 {
-                let last = usize::from(side == Side::Right);
-                let corner_of = |end: &Vec<Local>| if last == 0 { end[0] } else { end[end.len() - 1] };
-                let ends = [corner_of(&sides[0]), corner_of(&sides[1])];
-                let count = vertices.len();
-                if is_pole(side) {
-                    // One vertex for the whole side: that of both corners.
-                    let [low, high] = ends;
-                    nodes[low as usize].free = free;
-                    sides[side as usize] = vec![low];
-                    let other = if last == 0 { 0 } else { sides[1].len() - 1 };
-                    sides[1][other] = low;
-                    let _ = high;
-                } else if index == 0 {
-                    sides[side as usize][0] = ends[0];
-                } else if index + 1 == count {
-                    sides[side as usize][index] = ends[1];
-                }
-            }
+    let sides = Side::ALL.map(|side| {
+        let used = piece.edges[side as usize];
+        let free = layout.edges[used.edge].pole.then_some(side.axis());
+        let vertices = edges.side(layout, used, piece.domain[side.axis()]);
+        let node = |&(id, t): &(u32, f64)| Node { shared: Some(id), at: side.at(piece.domain, t), free };
+        let first = nodes.len() as Local;
+        nodes.extend(vertices.iter().map(node));
+        (first..nodes.len() as Local).collect::<Vec<Local>>()
+    });
+    let [mut bottom, mut top, mut left, mut right] = sides;
+    let is_pole = |side: Side| layout.edges[piece.edges[side as usize].edge].pole;
+    // Left and right begin and end where bottom and top do; one that is a pole takes their corners along.
+    for (side, line, place) in [(Side::Left, &mut left, 0), (Side::Right, &mut right, 1)] {
+        let [low, high] = [&mut bottom, &mut top].map(|end| {
+            let at = if place == 0 { 0 } else { end.len() - 1 };
+            &mut end[at]
+        });
+        if is_pole(side) {
+            (*low, *high) = (line[0], line[0]);
+        } else {
+            let last = line.len() - 1;
+            (line[0], line[last]) = (*low, *high);
         }
     }
-    (nodes, sides)
+    (nodes, [bottom, top, left, right])
 }
 
 fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> Made {
@@ -125,8 +118,13 @@ fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> 
         Some(id) => Vertex::Shared(id),
         None => Vertex::Inner(inner[local as usize]),
     };
-    let mut made =
-        Made { positions, triangles: Vec::new(), parameters: Vec::new(), bound: table.proven.then_some(0.0), measured: 0.0 };
+    let mut made = Made {
+        positions,
+        triangles: Vec::new(),
+        parameters: Vec::new(),
+        bound: table.proven.then_some(0.0),
+        measured: 0.0,
+    };
     for (index, triangle) in refinement.triangles.iter().enumerate() {
         let vertices = triangle.map(vertex);
         if vertices[0] == vertices[1] || vertices[1] == vertices[2] || vertices[2] == vertices[0] {

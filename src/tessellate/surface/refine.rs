@@ -142,7 +142,7 @@ impl<'a> Refinement<'a> {
 
     /// Whether a triangle runs counter-clockwise in the plane of parameters, beyond rounding.
     fn turns_left(&self, triangle: [Local; 3]) -> bool {
-        let [p, q, r] = triangle.map(|local| self.nodes[local as usize].at);
+        let [p, q, r] = self.parameters(triangle);
         let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
         let (left, right) = (a[0] * b[1], a[1] * b[0]);
         left - right > 1e-9 * (left.abs() + right.abs())
@@ -190,11 +190,17 @@ impl<'a> Refinement<'a> {
     /// From a triangle over longest sides to one that is the longest on both of its own.
     fn edge_to_split(&self, t: u32) -> Result<u32, Stopped> {
         let nowhere = || Stopped::NotReached(self.parameters(self.triangles[t as usize])[0]);
+        // What fails without any width, on an edge that cannot be split, fails for ever.
+        if !self.turns_left(self.triangles[t as usize]) {
+            return Err(nowhere());
+        }
         let (mut length, mut half_edge) = self.longest(t).ok_or_else(nowhere)?;
         loop {
             let twin = self.twins[half_edge as usize];
             match self.longest(twin / 3) {
-                Some((longer, next)) if longer > length && next != twin => (length, half_edge) = (longer, next),
+                Some((longer, next)) if longer > length && next != twin => {
+                    (length, half_edge) = (longer, next)
+                }
                 _ => return Ok(half_edge),
             }
         }
@@ -206,8 +212,12 @@ impl<'a> Refinement<'a> {
         let m = self.middle(a, b)?;
         let twin = self.twins[half_edge as usize];
         let (t, s) = (half_edge / 3, twin / 3);
-        let (bc, ca) = (self.twins[Topology::next(half_edge) as usize], self.twins[Topology::previous(half_edge) as usize]);
-        let (ad, db) = (self.twins[Topology::next(twin) as usize], self.twins[Topology::previous(twin) as usize]);
+        let (bc, ca) = (
+            self.twins[Topology::next(half_edge) as usize],
+            self.twins[Topology::previous(half_edge) as usize],
+        );
+        let (ad, db) =
+            (self.twins[Topology::next(twin) as usize], self.twins[Topology::previous(twin) as usize]);
         let (p, q) = (self.triangles.len() as u32, self.triangles.len() as u32 + 1);
         self.triangles[t as usize] = [a, m, c];
         self.triangles[s as usize] = [m, a, d];
@@ -240,7 +250,8 @@ impl<'a> Refinement<'a> {
         }
         let domain = self.surface.domain();
         let near = |axis: usize| {
-            (p.at[axis] - q.at[axis]).abs() <= FINEST * (domain[axis][1] - domain[axis][0]).abs().max(at[axis].abs())
+            (p.at[axis] - q.at[axis]).abs()
+                <= FINEST * (domain[axis][1] - domain[axis][0]).abs().max(at[axis].abs())
         };
         if near(0) && near(1) {
             return Err(Stopped::NotReached(at));
