@@ -16,7 +16,7 @@ mod solids;
 
 use nasty::{Case, shrunk};
 use ogee::boolean::{self, Op, Options, Steps, Tree};
-use ogee::mesh::Mesh;
+use ogee::mesh::{Mesh, Solid};
 use oracle::Truth;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -29,7 +29,7 @@ fn kernel_equals_oracle() {
     let mut failed = Vec::new();
     for seed in seed..seed + count {
         let case = Case::random(seed);
-        for kernel in [at_once, pair_by_pair] {
+        for kernel in [at_once, pair_by_pair, call_by_call] {
             if !disagreements(&case, &kernel).is_empty() {
                 failed.push(seed);
                 if failed.len() <= 3 {
@@ -61,6 +61,33 @@ fn at_once(tree: &Tree, operands: &[&Mesh]) -> Result<Mesh, String> {
 /// An arrangement for each operation, on the exact results of those before.
 fn pair_by_pair(tree: &Tree, operands: &[&Mesh]) -> Result<Mesh, String> {
     kernel(tree, operands, Steps::Pairs)
+}
+
+/// A call of the library for each operation on two solids, with its result for the next.
+fn call_by_call(tree: &Tree, operands: &[&Mesh]) -> Result<Mesh, String> {
+    fn solid_of(tree: &Tree, operands: &[&Mesh]) -> Result<Solid, String> {
+        let alone = |mesh: &Mesh| boolean::evaluate(&Tree::Leaf(0), &[mesh]).map(|combined| combined.solid);
+        match tree {
+            Tree::Leaf(index) => alone(operands[*index]).map_err(|error| error.to_string()),
+            Tree::Node(_, parts) if parts.is_empty() => Ok(Solid::default()),
+            Tree::Node(op, parts) => {
+                let mut parts = parts.iter().map(|part| solid_of(part, operands));
+                let first = parts.next().expect("there are some")?;
+                parts.try_fold(first, |so_far, part| {
+                    let pair = boolean::evaluate(&Tree::flat(*op, 2), &[&so_far, &part?]);
+                    pair.map(|combined| {
+                        if std::env::var("SETTLE").is_ok() {
+                            combined.solid.settled()
+                        } else {
+                            combined.solid
+                        }
+                    })
+                    .map_err(|error| error.to_string())
+                })
+            }
+        }
+    }
+    solid_of(tree, operands).map(Solid::into_mesh)
 }
 
 fn kernel(tree: &Tree, operands: &[&Mesh], steps: Steps) -> Result<Mesh, String> {

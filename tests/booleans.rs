@@ -2,7 +2,7 @@
 
 use ogee::boolean::{self, BooleanError, Combined, Op, Operand, Options, Tree, evaluate, evaluate_with};
 use ogee::math::{Quat, Vec3};
-use ogee::mesh::{Mesh, Solid, cuboid, sphere};
+use ogee::mesh::{Mesh, Solid, crossing_pairs, cuboid, sphere};
 
 fn cube(corner: Vec3, size: f64) -> Solid {
     cuboid(corner, corner + Vec3::splat(size))
@@ -41,6 +41,116 @@ fn some_pair() -> [Mesh; 2] {
     [ball.into_mesh(), moved(&cube(Vec3::splat(-0.7), 1.4), turn, Vec3::new(0.5, 0.1, 0.2))]
 }
 
+/// Cubes of many sizes, turned anyhow.
+fn turned_cubes(seed: u64, count: usize, growth: f64) -> Vec<Solid> {
+    let mut state = seed;
+    let mut random = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut vector = move || Vec3::new(random(), random(), random());
+    let cube = |i: usize| {
+        let turn = Quat::from_axis_angle(vector().normalize(), 2.0);
+        let mesh = moved(&cube(Vec3::splat(-0.5), 1.0), turn, 0.8 * vector());
+        let size = growth.powi(i as i32);
+        let scaled = mesh.positions.iter().map(|&p| size * p).collect();
+        Solid::new(Mesh::new(scaled, mesh.triangles)).expect("a cube")
+    };
+    (0..count).map(cube).collect()
+}
+
+/// The places of all vertices, each once.
+fn places(solid: &Solid) -> Vec<[u64; 3]> {
+    let mut places: Vec<_> =
+        solid.positions().iter().map(|&p| (p + 0.0).to_array().map(f64::to_bits)).collect();
+    places.sort_unstable();
+    places.dedup();
+    places
+}
+
+/// Sizes that grow and shrink make the lattice of each call another one.
+#[test]
+fn calls_one_after_another_are_as_exact_as_one_expression() {
+    let ops = [Op::Union, Op::Difference, Op::Union, Op::SymmetricDifference, Op::Intersection];
+    for growth in [1.0, 0.7, 1.3] {
+        for seed in 0..6 {
+            let cubes = turned_cubes(seed, 6, growth);
+            let operands: Vec<&Solid> = cubes.iter().collect();
+            let first = (Tree::Leaf(0), cubes[0].clone());
+            let (tree, chained) = ops.iter().zip(1..).fold(first, |(tree, solid), (&op, i)| {
+                let result = evaluate(&Tree::flat(op, 2), &[&solid, &cubes[i]]).expect("solids").solid;
+                (Tree::Node(op, vec![tree, Tree::Leaf(i)]), result)
+            });
+            let at_once = evaluate(&tree, &operands).expect("solids").solid;
+            // One expression takes the small parts on the lattice of the largest, a chain on their own.
+            let (one, other) = (places(&chained), places(&at_once));
+            assert_eq!(one.len(), other.len(), "seed {seed}, growth {growth}");
+            let coordinates = one.iter().flatten().zip(other.iter().flatten());
+            let off = coordinates.map(|(&x, &y)| (f64::from_bits(x) - f64::from_bits(y)).abs());
+            assert!(off.fold(0.0, f64::max) <= if growth > 1.0 { 1e-15 } else { 0.0 });
+            assert!((chained.measures().volume - at_once.measures().volume).abs() < 1e-14);
+        }
+    }
+}
+
+/// What is cut off and put back leaves no trace: every new vertex falls on the old plane again.
+#[test]
+fn what_is_cut_off_and_put_back_leaves_nothing_behind() {
+    for seed in 0..10 {
+        let cubes = turned_cubes(seed, 2, 0.9);
+        let [a, b] = [&cubes[0], &cubes[1]];
+        let rest = boolean::difference(a, b).solid;
+        let back = boolean::difference(a, &rest).solid;
+        let common = boolean::intersection(a, b).solid;
+        assert_eq!(places(&back), places(&common), "seed {seed}");
+        let whole = boolean::union(&rest, &common).solid;
+        assert_eq!(places(&whole), places(a), "seed {seed}");
+        let nothing = boolean::difference(&boolean::difference(a, &rest).solid, &common).solid;
+        assert!(nothing.is_empty(), "seed {seed}");
+        // Without the memory, slivers remain.
+        let settled = boolean::union(&rest.settled(), &common.settled()).solid;
+        assert_ne!(places(&settled), places(a), "seed {seed}");
+    }
+}
+
+/// A hundred calls, with sizes that leave the first lattice far behind.
+#[test]
+fn long_chains_that_grow_stay_clean() {
+    let mut tower = Solid::default();
+    for i in 0..100 {
+        let brick =
+            cuboid(Vec3::new(0.1 * f64::from(i), 0.0, 0.0), Vec3::new(0.1 * f64::from(i + 1), 0.3, 0.7));
+        tower = boolean::union(&tower, &brick).solid;
+    }
+    assert_eq!(tower.triangles().len(), 12);
+}
+
+/// A tip of one part touches a face of another from within, at no vertex of it.
+#[test]
+fn a_corner_on_the_inside_of_a_face_is_not_lost() {
+    let tetrahedron = |corners: [[f64; 3]; 4], triangles: [[u32; 3]; 4]| {
+        let mesh = Mesh::new(corners.map(Vec3::from_array).to_vec(), triangles.to_vec());
+        Solid::new(mesh).expect("a tetrahedron")
+    };
+    let parts = [
+        tetrahedron(
+            [[3.0, 4.0, 4.0], [1.0, 0.0, 3.0], [0.0, 4.0, 4.0], [3.0, 3.0, 1.0]],
+            [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+        ),
+        tetrahedron(
+            [[2.0, 2.0, 1.0], [2.0, 4.0, 1.0], [2.0, 4.0, 4.0], [0.0, 4.0, 4.0]],
+            [[0, 1, 2], [1, 0, 3], [1, 3, 2], [0, 2, 3]],
+        ),
+        tetrahedron(
+            [[2.0, 3.0, 2.0], [-2.0, 3.0, 2.0], [0.0, 1.0, 2.0], [0.0, 3.0, 0.0]],
+            [[0, 1, 2], [3, 1, 0], [3, 0, 2], [3, 2, 1]],
+        ),
+    ];
+    let either = boolean::symmetric_difference(&parts[1], &parts[2]).solid;
+    let all = boolean::union(&parts[0], &either).solid;
+    assert!((all.measures().volume - 9.668_253_968_253_968).abs() < 1e-12);
+}
+
 #[test]
 fn the_order_of_operands_changes_no_bit() {
     let [a, b] = some_pair();
@@ -55,7 +165,7 @@ fn the_order_of_operands_changes_no_bit() {
 fn every_triangle_lies_on_the_one_it_came_from() {
     let [a, b] = some_pair();
     for op in [Op::Union, Op::Intersection, Op::Difference, Op::SymmetricDifference] {
-        let Combined { solid, birth } = evaluate(&Tree::flat(op, 2), &[&a, &b]).unwrap();
+        let Combined { solid, birth, .. } = evaluate(&Tree::flat(op, 2), &[&a, &b]).unwrap();
         assert_eq!(solid.triangles().len(), birth.len());
         for (t, birth) in birth.iter().enumerate() {
             let source = [&a, &b][birth.operand as usize];
@@ -81,7 +191,7 @@ fn labels_keep_coplanar_faces_apart() {
     let plain = evaluate(&tree, &[&a, &b]).unwrap();
     assert_eq!(plain.solid.triangles().len(), 12);
     let labelled = [Operand::from(&a), Operand::from(&b).with_material(1)];
-    let Combined { solid, birth } = evaluate(&tree, &labelled).unwrap();
+    let Combined { solid, birth, .. } = evaluate(&tree, &labelled).unwrap();
     assert_eq!((solid.triangles().len(), solid.positions().len()), (20, 12));
     for (t, birth) in birth.iter().enumerate() {
         let middle = solid.mesh().corners(t).iter().sum::<Vec3>() / 3.0;
@@ -138,4 +248,38 @@ fn a_grid_joins_what_misses_by_less() {
             .len(),
         12
     );
+}
+
+/// A ring on a face, both part of one operand: what the ring leaves of the face in its middle has no side of its own.
+#[test]
+fn an_operand_may_lie_on_itself() {
+    let block = cuboid(Vec3::ZERO, Vec3::new(4.0, 4.0, 2.0)).into_mesh();
+    let outer = cuboid(Vec3::new(1.0, 1.0, 1.0), Vec3::new(3.0, 3.0, 2.0));
+    let inner = cuboid(Vec3::new(1.5, 1.5, 0.5), Vec3::new(2.5, 2.5, 2.5));
+    let ring = boolean::difference(&outer, &inner).solid.into_mesh();
+    let offset = block.positions.len() as u32;
+    let mut both = block;
+    both.positions.extend(ring.positions);
+    both.triangles.extend(ring.triangles.iter().map(|t| t.map(|v| v + offset)));
+    let whole = evaluate(&Tree::Leaf(0), &[&both]).expect("closed").solid;
+    assert_eq!((whole.triangles().len(), whole.measures().volume), (12, 32.0));
+}
+
+/// Cubes a billionth of a radian apart have features far below an ulp; none of them may end up folded.
+#[test]
+fn what_rounding_folds_is_repaired() {
+    let axis = Vec3::new(1.0, 2.0, 3.0).normalize();
+    let cubes: Vec<Mesh> = (0..30)
+        .map(|k| {
+            let turn = Quat::from_axis_angle(axis, 1e-9 * f64::from(k));
+            moved(&cube(Vec3::splat(-0.5), 1.0), turn, Vec3::ZERO)
+        })
+        .collect();
+    let Combined { solid, certificate, .. } =
+        evaluate(&Tree::flat(Op::Union, 30), &cubes.iter().collect::<Vec<_>>()).expect("cubes");
+    assert!(certificate.crossings_found > 0 && certificate.crossings_left == 0, "{certificate:?}");
+    assert!(certificate.movement < 1e-14, "{certificate:?}");
+    let all: Vec<u32> = (0..solid.triangles().len() as u32).collect();
+    assert_eq!(crossing_pairs(solid.mesh(), &all), Vec::<[u32; 2]>::new());
+    assert_eq!(solid.measures().genus, Some(0));
 }

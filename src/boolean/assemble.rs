@@ -16,8 +16,10 @@ pub(super) fn assemble<'a>(scene: Scene<'a>, carriers: Carriers, regions: &Regio
     let Joints { of_fin: joints, crowded } = pair_wedges(regions);
     let faces = merge_cells(&scene, &carriers, regions, &joints);
     let mut rims = Rims::new(&carriers, regions, &faces, &joints);
+    let touched_inside = rims.any_touch_inside(&scene, &carriers, regions, &faces, &joints);
     let middles = rims.straighten(&scene, &carriers, &faces);
-    let touches_itself = faces.any_merged_across(regions, &joints, &crowded)
+    let touches_itself = touched_inside
+        || faces.any_merged_across(regions, &joints, &crowded)
         || middles.any_met_by_others(&scene, &carriers, regions);
     let mut surface = Surface { of_rim: vec![NONE; rims.rims.len()], ..Surface::default() };
     surface.add_whole_triangles(&scene, &carriers, regions);
@@ -96,13 +98,17 @@ fn merge_cells(scene: &Scene<'_>, carriers: &Carriers, regions: &Regions, joints
 }
 
 impl Faces {
+    /// Whether a face goes on from one fin to the other.
+    fn go_on(&self, fin: &Fin, other: &Fin) -> bool {
+        let face = |fin: &Fin| self.of_cell.get(fin.cell as usize);
+        are_flanks_of_one_edge(fin, other) && face(fin) == face(other)
+    }
+
     /// Whether a face goes on across an edge that another wedge touches.
     fn any_merged_across(&self, regions: &Regions, joints: &[u32], crowded: &[bool]) -> bool {
-        (0..joints.len()).filter(|&fin| crowded[fin] && joints[fin] != NONE).any(|fin| {
-            let (fin, other) = (&regions.fins[fin], &regions.fins[joints[fin] as usize]);
-            let face = |fin: &Fin| self.of_cell.get(fin.cell as usize);
-            are_flanks_of_one_edge(fin, other) && face(fin) == face(other)
-        })
+        (0..joints.len())
+            .filter(|&fin| crowded[fin] && joints[fin] != NONE)
+            .any(|fin| self.go_on(&regions.fins[fin], &regions.fins[joints[fin] as usize]))
     }
 }
 
@@ -165,7 +171,7 @@ impl Rims {
             let Side::Carrier { carrier, edge, above } = fin.side else { continue };
             let other = &regions.fins[joints[index] as usize];
             let face = faces.of_cell[fin.cell as usize];
-            if are_flanks_of_one_edge(fin, other) && faces.of_cell[other.cell as usize] == face {
+            if faces.go_on(fin, other) {
                 continue;
             }
             let edge = &carriers.carriers[carrier as usize].overlay.edges[edge as usize];
@@ -188,6 +194,36 @@ impl Rims {
             rim.twin = rims.of_fin[joints[rim.fin as usize] as usize];
         }
         rims
+    }
+
+    /// Whether a rim or an untouched triangle has an end inside of a face, where the face will have no vertex.
+    fn any_touch_inside(
+        &self,
+        scene: &Scene<'_>,
+        carriers: &Carriers,
+        regions: &Regions,
+        faces: &Faces,
+        joints: &[u32],
+    ) -> bool {
+        let mut ends: Vec<(PointId, u32)> =
+            self.rims.iter().flat_map(|rim| rim.ends.map(|end| (end, rim.face))).collect();
+        ends.sort_unstable();
+        let mut inside: Vec<PointId> = Vec::new();
+        for (fin, _) in carrier_joints(regions, joints).filter(|&(fin, other)| faces.go_on(fin, other)) {
+            let face = faces.of_cell[fin.cell as usize];
+            inside.extend(fin.ends.into_iter().filter(|&end| ends.binary_search(&(end, face)).is_err()));
+        }
+        for carrier in carriers.carriers.iter().filter(|carrier| !carrier.marks.is_empty()) {
+            let mut cells = (carrier.first_cell..).take(carrier.overlay.coverage.len());
+            if cells.any(|cell| regions.is_kept(cell)) {
+                inside.extend(&carrier.marks);
+            }
+        }
+        inside.sort_unstable();
+        let is_end = |&point: &PointId| {
+            ends.get(ends.partition_point(|end| end.0 < point)).is_some_and(|end| end.0 == point)
+        };
+        inside.iter().any(is_end) || any_whole_triangle_at(scene, carriers, regions, &inside)
     }
 
     /// Finds how rims follow each other, and makes one of those that run straight on between the same two faces.
@@ -305,13 +341,23 @@ struct Middles {
 impl Middles {
     /// Whether another edge or vertex touches one of the edges there: two edges have four rims.
     fn any_met_by_others(&self, scene: &Scene<'_>, carriers: &Carriers, regions: &Regions) -> bool {
-        let is_kept = |t: usize| !carriers.touched[t] && regions.is_kept(regions.cell_of_triangle[t]);
         self.rims_at.iter().any(|&count| count > 4)
-            || !self.points.is_empty()
-                && (0..scene.corners.len())
-                    .filter(|&t| is_kept(t))
-                    .any(|t| scene.corners[t].iter().any(|corner| self.points.binary_search(corner).is_ok()))
+            || any_whole_triangle_at(scene, carriers, regions, &self.points)
     }
+}
+
+/// Whether an untouched triangle that is kept has a corner among some points, which are in order.
+fn any_whole_triangle_at(
+    scene: &Scene<'_>,
+    carriers: &Carriers,
+    regions: &Regions,
+    points: &[PointId],
+) -> bool {
+    let is_kept = |t: usize| !carriers.touched[t] && regions.is_kept(regions.cell_of_triangle[t]);
+    !points.is_empty()
+        && (0..scene.corners.len())
+            .filter(|&t| is_kept(t))
+            .any(|t| scene.corners[t].iter().any(|corner| points.binary_search(corner).is_ok()))
 }
 
 /// The result as triangles with twins, before vertices are numbered.

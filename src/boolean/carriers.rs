@@ -19,6 +19,8 @@ pub(super) struct Carrier {
     pub(super) overlay: Overlay,
     /// For each cell, a triangle of the first operand that covers it.
     pub(super) births: Vec<Option<Birth>>,
+    /// Points inside of cells at which something else touches them.
+    pub(super) marks: Vec<PointId>,
     /// Number of the first cell of this carrier among all.
     pub(super) first_cell: u32,
 }
@@ -157,8 +159,19 @@ impl Draft {
         let Draft { plane, chart, lines, world_lines, segments, marks, .. } = self;
         let overlay = overlay(&chart, &mut scene.world.places.points, &lines, &segments, &marks);
         let births = find_births(scene, &chart, &overlay);
-        Carrier { plane, chart, lines, world_lines, overlay, births, first_cell: 0 }
+        let marks = off_edges(marks, &overlay);
+        Carrier { plane, chart, lines, world_lines, overlay, births, marks, first_cell: 0 }
     }
+}
+
+/// The points that are no ends of edges.
+fn off_edges(points: Vec<PointId>, overlay: &Overlay) -> Vec<PointId> {
+    if points.is_empty() {
+        return points;
+    }
+    let mut ends: Vec<PointId> = overlay.edges.iter().flat_map(|edge| edge.ends).collect();
+    ends.sort_unstable();
+    points.into_iter().filter(|point| ends.binary_search(point).is_err()).collect()
 }
 
 /// For each covered cell, the least triangle of its first operand among those whose sides bound the part of the plane
@@ -186,16 +199,22 @@ fn find_births(scene: &Scene<'_>, chart: &Chart, overlay: &Overlay) -> Vec<Optio
         }
     }
     let mut births: Vec<Option<Birth>> = vec![None; sheets.len()];
+    let mut beside: Vec<Option<Birth>> = vec![None; sheets.len()];
     for edge in &overlay.edges {
         for jump in overlay.jumps_of(edge) {
-            let cell = if lies_above(scene, chart, jump) { edge.above } else { edge.below };
-            if let Some(sheet) = sheet(cell, jump.operand) {
-                let birth = scene.births[jump.face as usize];
-                let known = &mut births[sheets.find(sheet) as usize];
-                *known = Some(known.map_or(birth, |known| known.min(birth)));
+            let birth = scene.births[jump.face as usize];
+            let above = lies_above(scene, chart, jump);
+            for (cell, is_own) in [(edge.above, above), (edge.below, !above)] {
+                if let Some(sheet) = sheet(cell, jump.operand) {
+                    let known = if is_own { &mut births } else { &mut beside };
+                    let known = &mut known[sheets.find(sheet) as usize];
+                    *known = Some(known.map_or(birth, |known| known.min(birth)));
+                }
             }
         }
     }
+    // An operand that overlaps itself may leave a sheet of which every side belongs to a triangle beside it.
+    births.iter_mut().zip(beside).for_each(|(birth, beside)| *birth = birth.or(beside));
     let first_of = |cell: usize| (first_sheet[cell] < first_sheet[cell + 1]).then(|| first_sheet[cell]);
     let mut birth_of = |cell: usize| births[sheets.find(first_of(cell)?) as usize];
     (0..overlay.coverage.len()).map(&mut birth_of).collect()

@@ -1,29 +1,95 @@
 //! From exact surface to solid: vertices numbered, positions rounded, once.
 
-use super::Combined;
+use super::Birth;
 use super::body::Body;
-use super::world::{NONE, World};
+use super::world::{Lookup, NONE, World};
 use crate::math::Vec3;
-use crate::mesh::{Mesh, Solid, fans};
-use crate::polygon::exact::{Plane, PointId};
+use crate::mesh::{Mesh, fans};
+use crate::polygon::exact::{Origin, Plane, PointId};
+
+/// A result with rounded positions.
+pub(super) struct Rounded {
+    pub(super) mesh: Mesh,
+    pub(super) birth: Vec<Birth>,
+    /// Whether it is known not to cross itself.
+    pub(super) embedded: bool,
+    /// What it was rounded from.
+    pub(super) origin: Option<Origin>,
+    /// Bound on the distance of a vertex from its exact place.
+    pub(super) movement: f64,
+}
 
 impl World<'_> {
-    /// The solid that a body stands for.
-    pub(super) fn solid_of(mut self, body: Body) -> Combined {
+    /// The surface that a body stands for.
+    pub(super) fn round(mut self, body: Body) -> Rounded {
         let mut surface = Numbered::new(body);
         let is_parted = surface.part_double_edges(&mut self);
         let Numbered { body, vertices, count } = surface;
-        let mut positions = vec![Vec3::ZERO; count as usize];
+        let mut points = vec![PointId(NONE); count as usize];
         for (&point, &vertex) in body.corners.iter().flatten().zip(&vertices) {
-            positions[vertex as usize] = self.places.position(point);
+            points[vertex as usize] = point;
         }
-        let is_given = |&point: &PointId| self.places.is_given(point);
+        let positions: Vec<Vec3> = points.iter().map(|&point| self.places.position(point)).collect();
         let embedded = body.embedded
             && !is_parted
             && self.places.is_exact()
-            && body.corners.iter().flatten().all(is_given);
+            && points.iter().all(|&point| self.places.is_given(point));
+        let exact = body.embedded && !is_parted;
+        let origin = if embedded { None } else { self.origin_of(&body, &points, exact) };
+        let movement = origin.as_ref().map_or(0.0, |origin| self.movement(origin, &positions));
         let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
-        Combined { solid: Solid::assume(mesh, embedded), birth: body.births }
+        Rounded { mesh, birth: body.births, embedded, origin, movement }
+    }
+
+    /// Bound on the distance of positions from where the vertices are: half an ulp in each coordinate of what was rounded,
+    /// half a unit of the lattice of what was given.
+    fn movement(&self, origin: &Origin, positions: &[Vec3]) -> f64 {
+        let rounding = |vertex: u32| (0.5 * f64::EPSILON * positions[vertex as usize]).length();
+        let rounded = origin.fractions.iter().map(|&(vertex, _)| rounding(vertex)).fold(0.0, f64::max);
+        let unit = self.places.lattice().to_model(Vec3::splat(0.5)).length();
+        if origin.sites.is_empty() { rounded } else { rounded.max(unit) }
+    }
+
+    /// What the positions of a body with its vertices at some points do not say; `None` when they say everything.
+    fn origin_of(&self, body: &Body, points: &[PointId], embedded: bool) -> Option<Origin> {
+        let mut origin = Origin::on(self.places.lattice(), embedded);
+        for (vertex, &point) in (0..).zip(points) {
+            if let Some(place) = self.places.hidden_place(point) {
+                origin.add(vertex, place);
+            }
+        }
+        let is_fraction = |point: &PointId| self.points().as_site(*point).is_none();
+        let mut planes = Numbers::default();
+        for (t, corners) in (0..).zip(&body.corners) {
+            if corners.iter().any(is_fraction) {
+                let facing = body.facings[t as usize];
+                origin.faces.push((t, planes.number(facing.plane()), facing.is_with_plane()));
+            }
+        }
+        origin.planes = planes.known.iter().map(|&index| *self.plane(index)).collect();
+        let mut lines = Numbers::default();
+        for (half_edge, &line) in (0..).zip(&body.lines).filter(|(_, line)| **line != NONE) {
+            origin.sides.push((half_edge, lines.number(line)));
+        }
+        origin.lines = lines.known.iter().map(|&index| self.lines[index as usize]).collect();
+        let says_something = !(origin.sites.is_empty() && origin.fractions.is_empty());
+        says_something.then_some(origin)
+    }
+}
+
+/// New numbers for some indices, in the order in which they come.
+#[derive(Default)]
+struct Numbers {
+    of: Lookup<u32, u32>,
+    known: Vec<u32>,
+}
+
+impl Numbers {
+    fn number(&mut self, index: u32) -> u32 {
+        *self.of.entry(index).or_insert_with(|| {
+            self.known.push(index);
+            self.known.len() as u32 - 1
+        })
     }
 }
 
@@ -54,16 +120,16 @@ impl Numbered {
     }
 
     /// Parts edges, but none of a triangle that was cut already: its half-edges have moved.
-    fn part(&mut self, world: &mut World<'_>, double: &[u32]) {
+    fn part(&mut self, world: &mut World<'_>, double: &[[u32; 2]]) {
         let mut is_cut = vec![false; self.body.len()];
-        for &half_edge in double {
+        for &[beside, half_edge] in double {
             let twin = self.body.twins[half_edge as usize];
             let triangles = [half_edge as usize / 3, twin as usize / 3];
             if triangles.iter().any(|&t| is_cut[t]) {
                 continue;
             }
             triangles.into_iter().for_each(|t| is_cut[t] = true);
-            let on_the_way = self.point_on(world, half_edge);
+            let on_the_way = self.point_on(world, half_edge, beside);
             let far = self.split_side(half_edge, on_the_way);
             let other_far = self.split_side(twin, on_the_way);
             self.count += 1;
@@ -74,20 +140,23 @@ impl Numbered {
         }
     }
 
-    /// One half-edge of each edge between vertices that an edge before it joins too.
-    fn double_edges(&self) -> Vec<u32> {
+    /// One half-edge of each edge between vertices that an edge before it joins too, behind one of that.
+    fn double_edges(&self) -> Vec<[u32; 2]> {
         let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
         let mut edges: Vec<(u32, u32, u32)> = (0..self.vertices.len())
             .map(|h| (self.vertices[h], self.vertices[next(h)], h as u32))
             .filter(|(from, to, _)| from < to)
             .collect();
         edges.sort_unstable();
-        edges.windows(2).filter(|e| (e[0].0, e[0].1) == (e[1].0, e[1].1)).map(|e| e[1].2).collect()
+        edges.windows(2).filter(|e| (e[0].0, e[0].1) == (e[1].0, e[1].1)).map(|e| [e[0].2, e[1].2]).collect()
     }
 
     /// A point on an edge, where a plane of lattice points crosses it near the middle. Where the edge is too short for
     /// one, its start.
-    fn point_on(&self, world: &mut World<'_>, half_edge: u32) -> PointId {
+    ///
+    /// An edge inside a face has no line of its own; it lies where the face's plane crosses one of those beside the other
+    /// edge between the same points.
+    fn point_on(&self, world: &mut World<'_>, half_edge: u32, beside: u32) -> PointId {
         let corners = self.body.corners[half_edge as usize / 3];
         let [from, to] = [0, 1].map(|i| corners[(half_edge as usize + i) % 3]);
         let [a, b] = [from, to].map(|p| world.points().rounded(p));
@@ -97,14 +166,19 @@ impl Numbered {
         if across.side(world.points(), from) * across.side(world.points(), to) >= 0 {
             return from;
         }
-        match self.body.lines.get(half_edge as usize) {
-            None | Some(&NONE) => world.places.points.crossing(from, to, &across),
-            Some(&line) => {
-                let face = self.body.facings[half_edge as usize / 3].plane();
-                let (face, line) = (*world.plane(face), world.lines[line as usize]);
-                world.places.points.meeting(&face, &line, &across).expect("the plane crosses the edge")
-            }
+        if [from, to].iter().all(|&end| world.points().as_site(end).is_some()) {
+            return world.places.points.crossing(from, to, &across);
         }
+        let plane_of = |half_edge: u32| *world.plane(self.body.facings[half_edge as usize / 3].plane());
+        let face = plane_of(half_edge);
+        let lines: Vec<Plane> = match self.body.lines[half_edge as usize] {
+            NONE => [beside, self.body.twins[beside as usize], self.body.twins[half_edge as usize]]
+                .map(plane_of)
+                .into(),
+            line => vec![world.lines[line as usize]],
+        };
+        let mut points = lines.iter().filter_map(|line| world.places.points.meeting(&face, line, &across));
+        points.next().expect("two faces in different planes meet along the edge")
     }
 
     /// Cuts the triangle of a half-edge in two at a point on it. The half-edge keeps its first half; the other half, which

@@ -17,25 +17,28 @@
 //! The arrangement follows Attene (2020) and Cherchi et al. (2022) in its indirect points, EMBER (Trettner,
 //! Nehring-Wirxel, Kobbelt 2022) in its winding vectors, and differs from them in working plane by plane.
 
+mod arrive;
 mod assemble;
 mod body;
 mod carriers;
+mod certificate;
 mod contacts;
 mod leave;
 mod operand;
 mod pairs;
 mod ray;
 mod regions;
+mod repair;
 mod scene;
 mod strategy;
 mod tree;
 mod world;
 
+pub use certificate::Certificate;
 pub use operand::Operand;
 pub use tree::{Op, Tree};
 
-use crate::mesh::{Defects, Mesh, Solid, Topology};
-use crate::polygon::exact::Snapped;
+use crate::mesh::{Defects, Solid};
 use body::Body;
 use std::fmt;
 use world::World;
@@ -47,6 +50,8 @@ pub struct Combined {
     pub solid: Solid,
     /// For each triangle of `solid`, where it came from.
     pub birth: Vec<Birth>,
+    /// What is known of `solid`.
+    pub certificate: Certificate,
 }
 
 /// Where a triangle of a result came from.
@@ -162,46 +167,9 @@ where
     if let Some(index) = tree.last_operand().filter(|&last| last >= operands.len()) {
         return Err(BooleanError::NoSuchOperand { index, count: operands.len() });
     }
-    let (world, bodies) = enter(&operands, options.resolution)?;
+    let (world, bodies) = arrive::enter(&operands, options.resolution)?;
     let (world, body) = strategy::evaluate(world, bodies, tree, options.steps);
-    Ok(world.solid_of(body))
-}
-
-/// Puts all operands on the finest lattice for them, or on one as coarse as `resolution` allows.
-fn enter<'a>(operands: &[Operand<'a>], resolution: f64) -> Result<(World<'a>, Vec<Body>), BooleanError> {
-    let closed = operands.iter().enumerate().map(|(i, operand)| topology_of(i, operand));
-    let topologies: Vec<Topology> = closed.collect::<Result<_, _>>()?;
-    let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
-    let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
-    let mut world = World::new(Snapped::new(largest, resolution));
-    world.places.points.reserve(operands.iter().map(|operand| operand.mesh.positions.len()).sum());
-    world.labels = operands.iter().map(|operand| operand.labels).collect();
-    let enter = |(i, (operand, topology))| Body::of_operand(&mut world, i, operand, &topology);
-    let bodies = (0..).zip(operands.iter().zip(topologies)).map(enter).collect();
-    Ok((world, bodies))
-}
-
-/// The topology of an operand, which must bound a volume.
-fn topology_of(index: usize, operand: &Operand<'_>) -> Result<Topology, BooleanError> {
-    let Mesh { positions, triangles } = operand.mesh;
-    let is_sound = |&[a, b, c]: &[u32; 3]| {
-        a != b && b != c && c != a && [a, b, c].iter().all(|&v| (v as usize) < positions.len())
-    };
-    let simple =
-        operand.checked || (triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()));
-    if simple {
-        let topology = Topology::new(triangles);
-        if operand.checked || topology.is_closed() {
-            return Ok(topology);
-        }
-    }
-    // What is not that simple may be closed all the same.
-    let defects = Defects::of(operand.mesh);
-    if defects.is_closed() {
-        Ok(Topology::new(triangles))
-    } else {
-        Err(BooleanError::NotClosed { operand: index, defects: Box::new(defects) })
-    }
+    Ok(certificate::certify(world.round(body), &operands))
 }
 
 /// Evaluates an expression of bodies in one arrangement.

@@ -1,5 +1,6 @@
 use super::world::Labels;
 use crate::mesh::{Mesh, Solid};
+use crate::polygon::exact::Origin;
 
 /// An operand of a boolean: a mesh and what is known of it.
 #[derive(Clone, Copy, Debug)]
@@ -10,6 +11,8 @@ pub struct Operand<'a> {
     /// Whether it is known not to cross itself.
     pub(super) embedded: bool,
     pub(super) labels: Labels<'a>,
+    /// What it was rounded from.
+    pub(super) origin: Option<&'a Origin>,
 }
 
 impl<'a> Operand<'a> {
@@ -33,12 +36,18 @@ impl<'a> Operand<'a> {
 
 impl<'a> From<&'a Mesh> for Operand<'a> {
     fn from(mesh: &'a Mesh) -> Self {
-        Operand { mesh, checked: false, embedded: false, labels: Labels::One(0) }
+        Operand { mesh, checked: false, embedded: false, labels: Labels::One(0), origin: None }
     }
 }
 
 impl<'a> From<&'a Solid> for Operand<'a> {
     fn from(solid: &'a Solid) -> Self {
-        Operand { mesh: solid.mesh(), checked: true, embedded: solid.is_embedded(), labels: Labels::One(0) }
+        Operand {
+            mesh: solid.mesh(),
+            checked: true,
+            embedded: solid.is_embedded(),
+            labels: Labels::One(0),
+            origin: solid.origin(),
+        }
     }
 }

@@ -23,7 +23,7 @@ pub(super) enum Side {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fin {
     /// The edge, from the smaller point to the larger one.
-    ends: [PointId; 2],
+    pub(super) ends: [PointId; 2],
     /// Index of its plane in the list of planes of all fins.
     plane: u32,
     /// Whether the cell lies to the left of the edge about the normal of the plane.

@@ -1,10 +1,13 @@
+use super::build::print;
 use super::input::{Kind, Source, endings};
 use super::model::Times;
 use super::output::{self, Output};
 use super::settings::format;
 use super::stop::Stop;
+use super::summary::{Form, Summary};
 use super::terminal::Terminal;
-use crate::boolean::{self, BooleanError, Op, Tree};
+use crate::boolean::{self, BooleanError, Combined, Op, Tree};
+use crate::csg::Note;
 use crate::io::Format;
 use crate::mesh::Mesh;
 use clap::{ValueEnum, ValueHint};
@@ -31,6 +34,9 @@ pub(super) struct Args {
     /// Write this format, whatever the ending
     #[arg(long, value_parser = format())]
     format: Option<Format>,
+    /// Print measures and times to standard output
+    #[arg(long, value_enum, value_name = "FORM")]
+    summary: Option<Form>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -57,7 +63,7 @@ impl Operation {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
-    let outputs = output::plan(&args.output, args.format)?;
+    let outputs = output::plan_beside(args.summary, &args.output, args.format)?;
     let sources: Vec<Source> = args.operands.iter().map(|path| Source::typed(path)).collect();
     let mut times = Times::default();
     let meshes = times
@@ -65,12 +71,18 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let operands: Vec<&Mesh> = meshes.iter().collect();
     let tree = Tree::flat(args.operation.op(), operands.len());
     let combined = times.stage(terminal, "build", "combining", || boolean::evaluate(&tree, &operands));
-    let solid = combined.map_err(|error| explain(&error, &sources))?.solid;
+    let Combined { solid, certificate, .. } = combined.map_err(|error| explain(&error, &sources))?;
+    if certificate.crossings_left > 0 {
+        terminal.warn(Note::CrossingsLeft.to_string());
+    }
     times.stage(terminal, "write", "writing", || output::write(&outputs, solid.mesh()))?;
     for name in outputs.iter().filter_map(Output::name) {
         terminal.note(format_args!("{name}: {} triangles, {:.2} s", solid.triangles().len(), times.total()));
     }
-    Ok(())
+    let Some(form) = args.summary else { return Ok(()) };
+    let mut summary = Summary::default();
+    summary.measures(&solid.measures()).certificate(&certificate).row("seconds", times.rows());
+    print(&summary.print(form))
 }
 
 fn read(source: &Source) -> Result<Mesh, Stop> {

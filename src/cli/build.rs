@@ -72,10 +72,7 @@ impl Job {
         if let Some(hint) = hint {
             return Err(Stop::about(source, hint));
         }
-        let outputs = output::plan(&args.output, args.format)?;
-        if args.summary.is_some() && outputs.iter().any(|output| output.name().is_none()) {
-            return Err(Stop::Usage("-o - and --summary both want standard output".to_owned()));
-        }
+        let outputs = output::plan_beside(args.summary, &args.output, args.format)?;
         // A file that is not there is explained where it is read.
         let kind = kind.unwrap_or(Kind::Script);
         Ok(Job { source, kind, outputs, summary: args.summary, strict: args.strict })

@@ -3,6 +3,7 @@
 
 use super::input;
 use super::stop::Stop;
+use super::summary::Form;
 use crate::io::{Format, WriteError, obj, write_mesh};
 use crate::math::Vec3;
 use crate::mesh::Mesh;
@@ -29,6 +30,19 @@ pub(super) struct Output {
     name: String,
     place: Place,
     format: Format,
+}
+
+/// [`plan`], where a summary may want standard output.
+pub(super) fn plan_beside(
+    summary: Option<Form>,
+    typed: &[PathBuf],
+    format: Option<Format>,
+) -> Result<Vec<Output>, Stop> {
+    let outputs = plan(typed, format)?;
+    if summary.is_some() && outputs.iter().any(|output| output.name().is_none()) {
+        return Err(Stop::Usage("-o - and --summary both want standard output".to_owned()));
+    }
+    Ok(outputs)
 }
 
 /// What is meant by the `-o` options. Refuses what cannot work before any work is done: an unknown ending, the same

@@ -1,5 +1,6 @@
 //! Measures of what was made, for people and for programs.
 
+use crate::boolean::Certificate;
 use crate::csg::Report;
 use crate::curve::{Bounds, CurveError, Path};
 use crate::math::{Aabb, Vec2};
@@ -61,8 +62,29 @@ impl Summary {
 
     /// Adds how the build went.
     pub(super) fn report(&mut self, report: &Report) -> &mut Summary {
-        let Report { made, booleans, reused, skipped, notes: _ } = report;
-        self.row("steps", json!({ "made": made, "booleans": booleans, "reused": reused, "skipped": skipped }))
+        let Report { made, booleans, reused, skipped, certificate, notes: _ } = report;
+        self.row(
+            "steps",
+            json!({ "made": made, "booleans": booleans, "reused": reused, "skipped": skipped }),
+        );
+        if *booleans > 0 {
+            self.certificate(certificate);
+        }
+        self
+    }
+
+    /// Adds what is known of results of booleans.
+    pub(super) fn certificate(&mut self, certificate: &Certificate) -> &mut Summary {
+        let Certificate { slivers, crossings_found, crossings_left, movement } = certificate;
+        self.row(
+            "booleans",
+            json!({
+                "slivers": slivers,
+                "crossings found": crossings_found,
+                "crossings left": crossings_left,
+                "movement": movement,
+            }),
+        )
     }
 
     /// The whole as text that ends with a line end.

@@ -3,7 +3,7 @@ use super::frame::is_finite;
 use super::plan::{self, Spot, Uses};
 use super::solve::Solver;
 use super::{Body, Csg, Dimension, Flat};
-use crate::boolean::BooleanError;
+use crate::boolean::{BooleanError, Certificate};
 use crate::math::Affine3;
 use crate::mesh::{Defects, Solid, TooLarge};
 use crate::numeric::Unfit;
@@ -55,7 +55,7 @@ pub enum Shape {
 }
 
 /// How a build went.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     /// Leaves, hulls and extrusions that were made; equal ones are made once.
     pub made: u64,
@@ -65,6 +65,8 @@ pub struct Report {
     pub reused: u64,
     /// Leaves that were left out, unmade, because they cannot matter.
     pub skipped: u64,
+    /// What is known of all results of booleans together.
+    pub certificate: Certificate,
     /// What the user may want to know, each kind once.
     pub notes: Vec<Note>,
 }
@@ -88,12 +90,17 @@ pub enum Note {
     SingularMap,
     /// Plane regions and solids are mixed; only those of the first one's dimension take part.
     MixedDimensions,
+    /// Faces so near each other that their triangles pass through each other once positions are rounded.
+    CrossingsLeft,
 }
 
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Note::SingularMap => "a transform flattens its child, which then encloses nothing",
+            Note::CrossingsLeft => {
+                "parts miss each other by rounding errors only; some triangles of the result pass through each other"
+            }
             Note::MixedDimensions => {
                 "plane and solid children are mixed; those unlike the first are left out"
             }

@@ -1,7 +1,7 @@
 //! Carrying out a plan.
 
 use super::arena::{Arena, NodeId};
-use super::build::{BuildError, BuildOptions, Color, Progress, Report};
+use super::build::{BuildError, BuildOptions, Color, Note, Progress, Report};
 use super::frame::{is_identity, widened};
 use super::plan::{self, Kind, Plan, Spot, Uses};
 use crate::boolean::{self, Op, Operand, Tree};
@@ -213,14 +213,23 @@ impl<'a, 'b> Solver<'a, 'b> {
 
     fn evaluate(&mut self, tree: &Tree, parts: &[Part]) -> Result<Part, BuildError> {
         let materials = materials(parts);
-        let operands: Vec<Operand<'_>> =
-            parts.iter().zip(&materials).map(|(part, &m)| part.operand().with_material(m)).collect();
+        let painted = parts.iter().zip(&materials);
+        let operands: Vec<Operand<'_>> = painted
+            .map(|(part, materials)| match materials {
+                Materials::One(material) => part.operand().with_material(*material),
+                Materials::Each(materials) => part.operand().with_materials(materials),
+            })
+            .collect();
         let combined = boolean::evaluate_with(
             tree,
             &operands,
             &boolean::Options { resolution: self.resolution, ..Default::default() },
         )?;
         self.report.booleans += 1;
+        self.report.certificate = self.report.certificate.and(combined.certificate);
+        if combined.certificate.crossings_left > 0 {
+            self.report.note(Note::CrossingsLeft);
+        }
         self.step();
         self.check_limit(combined.solid.triangles().len() as u64)?;
         let color_of = |birth: &boolean::Birth| parts[birth.operand as usize].color(birth.triangle as usize);
@@ -234,19 +243,24 @@ impl<'a, 'b> Solver<'a, 'b> {
     }
 }
 
-/// A label for each part, equal for parts of one colour.
-fn materials(parts: &[Part]) -> Vec<u32> {
+/// Labels of a part.
+enum Materials {
+    One(u32),
+    Each(Vec<u32>),
+}
+
+/// Labels of the triangles of each part, equal for equal colours.
+fn materials(parts: &[Part]) -> Vec<Materials> {
     let mut known: HashMap<Option<[u32; 4]>, u32> = HashMap::new();
-    let mut next = 0;
-    let mut fresh = || {
-        next += 1;
-        next - 1
+    let mut label = |color: &Option<Color>| {
+        let next = known.len() as u32;
+        *known.entry(color.map(|c| c.map(f32::to_bits))).or_insert(next)
     };
-    let label = |part: &Part| match part.paint {
-        Paint::All(color) => *known.entry(color.map(|c| c.map(f32::to_bits))).or_insert_with(&mut fresh),
-        Paint::Each(_) => fresh(),
+    let mut labels = |part: &Part| match &part.paint {
+        Paint::All(color) => Materials::One(label(color)),
+        Paint::Each(colors) => Materials::Each(colors.iter().map(&mut label).collect()),
     };
-    parts.iter().map(label).collect()
+    parts.iter().map(&mut labels).collect()
 }
 
 impl Geometry {

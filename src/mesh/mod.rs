@@ -1,12 +1,14 @@
 //! Triangle meshes: the open record [`Mesh`], the checked promise [`Solid`], connectivity without positions
 //! ([`Topology`]), and what can be asked of them.
 
+mod crossing;
 mod defects;
 mod measure;
 mod primitive;
 mod solid;
 mod topology;
 
+pub use crossing::crossing_pairs;
 pub use defects::Defects;
 pub(crate) use defects::fans;
 pub use measure::{Measures, area, components, volume};

@@ -1,6 +1,8 @@
 use super::defects::fans;
 use super::{Defects, Mesh, Topology};
 use crate::math::Vec3;
+use crate::polygon::exact::Origin;
+use std::sync::Arc;
 
 /// A mesh that bounds a volume, checked once.
 ///
@@ -20,10 +22,20 @@ use crate::math::Vec3;
 /// open.triangles.pop();
 /// assert_eq!(Solid::new(open).unwrap_err().open_edges, 3);
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+///
+/// The result of a boolean also remembers the exact surface that its positions were rounded from, so that the next
+/// boolean goes on from there. Two solids are equal when their meshes are; what they remember is not compared.
+#[derive(Clone, Debug, Default)]
 pub struct Solid {
     mesh: Mesh,
     embedded: bool,
+    origin: Option<Arc<Origin>>,
+}
+
+impl PartialEq for Solid {
+    fn eq(&self, other: &Solid) -> bool {
+        (&self.mesh, self.embedded) == (&other.mesh, other.embedded)
+    }
 }
 
 impl Solid {
@@ -39,14 +51,30 @@ impl Solid {
         }
         let whole = defects.non_manifold_vertices == 0 && defects.unused_positions == 0;
         let mesh = if whole { mesh } else { with_a_vertex_per_fan(&mesh) };
-        Ok(Solid { mesh, embedded: false })
+        Ok(Solid { mesh, embedded: false, origin: None })
     }
 
     /// A solid made by a verb that keeps the promises by construction. `embedded` says that the surface is known
     /// not to cross or touch itself except at its own edges and vertices.
     pub(crate) fn assume(mesh: Mesh, embedded: bool) -> Solid {
         debug_assert!(Defects::of(&mesh).is_solid(), "{:?}", Defects::of(&mesh));
-        Solid { mesh, embedded }
+        Solid { mesh, embedded, origin: None }
+    }
+
+    /// The same solid with the exact surface that it was rounded from.
+    pub(crate) fn rounded_from(self, origin: Option<Origin>) -> Solid {
+        Solid { origin: origin.map(Arc::new), ..self }
+    }
+
+    /// The exact surface that it was rounded from, where that is another.
+    pub(crate) fn origin(&self) -> Option<&Origin> {
+        self.origin.as_deref()
+    }
+
+    /// The same solid, its positions taken as they are: it forgets the exact surface that a boolean rounded them from.
+    #[must_use]
+    pub fn settled(self) -> Solid {
+        Solid { origin: None, ..self }
     }
 
     /// Whether the surface is known not to cross itself; `false` where nobody has looked.

@@ -112,6 +112,35 @@ impl<const N: usize> Wide<N> {
         }
     }
 
+    /// Number of zero bits below the lowest one that is set; 0 for zero.
+    pub fn trailing_zeros(&self) -> u32 {
+        let low = self.limbs().iter().position(|&limb| limb != 0);
+        low.map_or(0, |at| 64 * at as u32 + self.limbs[at].trailing_zeros())
+    }
+
+    /// The product with 2^`exponent`; `None` where that is no integer, or one too wide.
+    pub fn times_power_of_two(&self, exponent: i32) -> Option<Self> {
+        if self.is_zero() {
+            return Some(*self);
+        }
+        let by = exponent.unsigned_abs();
+        let (limbs, bits) = ((by / 64) as usize, by % 64);
+        let fits = if exponent < 0 { by <= self.trailing_zeros() } else { self.bits() + by <= 64 * N as u32 };
+        fits.then(|| {
+            // Limb `i` of the source, or of what lies beside it.
+            let source =
+                |i: Option<usize>| i.and_then(|i| self.limbs.get(i)).map_or(0, |&limb| u128::from(limb));
+            let limb = |i: usize| match exponent {
+                ..0 => ((source(Some(i + limbs)) | source(Some(i + limbs + 1)) << 64) >> bits) as u64,
+                0.. => {
+                    let (low, high) = (i.checked_sub(limbs + 1), i.checked_sub(limbs));
+                    (((source(high) << 64 | source(low)) << bits) >> 64) as u64
+                }
+            };
+            Wide::from_limbs(self.negative, std::array::from_fn(limb), N)
+        })
+    }
+
     /// The nearest double (ties to even). Numbers of more than 1023 bits are infinite.
     pub fn to_f64(&self) -> f64 {
         let bits = self.bits();
@@ -409,6 +438,18 @@ mod tests {
             prop_assert_eq!(u64::from(a.bits()), big_a.bits());
             prop_assert_eq!(a.signum(), big_a.signum().to_i32().expect("small"));
             prop_assert_eq!(a.to_f64(), big_a.to_f64().expect("finite"));
+        }
+
+        #[test]
+        fn powers_of_two_multiply_exactly_or_not_at_all((a, big_a) in number(), exponent in -400_i32..800) {
+            let factor = BigInt::from(1) << exponent.unsigned_abs();
+            let expected = if exponent < 0 {
+                (&big_a % &factor).is_zero().then(|| &big_a / &factor)
+            } else {
+                Some(&big_a * &factor).filter(|product| product.bits() <= 12 * 64)
+            };
+            prop_assert_eq!(a.times_power_of_two(exponent).map(|product| value(&product)), expected);
+            prop_assert_eq!(u64::from(a.trailing_zeros()), big_a.trailing_zeros().unwrap_or(0));
         }
 
         #[test]

@@ -28,9 +28,19 @@ impl Lattice {
         Lattice { exponent: self.exponent.max(exponent) }
     }
 
+    /// The exponent of two by which coordinates on this lattice are multiplied on `other`.
+    pub(crate) fn exponent_in(self, other: Lattice) -> i32 {
+        self.exponent - other.exponent
+    }
+
     /// The nearest lattice point (ties away from zero).
     pub fn snap(self, p: Vec3) -> Site {
         p.to_array().map(|c| scale_by_power_of_two(c, -self.exponent).round() as i64)
+    }
+
+    /// Whether a position is a lattice point.
+    pub(crate) fn holds(self, p: Vec3) -> bool {
+        p.to_array().iter().all(|&c| scale_by_power_of_two(c, -self.exponent).fract() == 0.0)
     }
 
     /// From lattice units to model units.

@@ -6,11 +6,14 @@
 //!
 //! | number | bits |
 //! |---|---|
-//! | coordinate, normal, offset | 60, 123, 185 |
-//! | numerator and denominator of a point where three planes meet | 434, 372 |
-//! | plane at such a point | 560 |
-//! | comparison of two coordinates | 807 |
-//! | orientation of three points in a plane | 1243 |
+//! | coordinate, normal, offset | 60, 126, 188 |
+//! | numerator and denominator of a point where three planes meet | 443, 381 |
+//! | plane at such a point | 571 |
+//! | comparison of two coordinates | 824 |
+//! | orientation of three points in a plane | 1269 |
+//!
+//! Normals of planes through lattice points have 123 bits; the other three are for surfaces that come from a finer
+//! lattice ([`Origin`]).
 //!
 //! A double with a bound on its error decides first wherever it can. Points know their position rounded correctly to
 //! doubles; rounding is monotone, so differing rounded coordinates order the exact ones.
@@ -21,6 +24,7 @@
 mod chart;
 mod contours;
 mod lattice;
+mod origin;
 mod overlay;
 mod plane;
 mod points;
@@ -31,6 +35,8 @@ mod triangulate;
 pub use chart::{Chart, Line};
 pub use contours::followers;
 pub use lattice::Lattice;
+pub use origin::Origin;
+pub(crate) use origin::Place;
 pub use overlay::{Jump, Overlay, Segment, SubEdge, overlay};
 pub use plane::Plane;
 pub use points::{PointId, Points};

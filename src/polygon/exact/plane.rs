@@ -16,6 +16,9 @@ pub struct Plane {
 /// roundings of its factors and product and three of the sum, 2^-53 each; twice that is safe.
 const FILTER: f64 = 12.0 * (f64::EPSILON / 2.0);
 
+/// Bits of normals. Those of planes through lattice points have at most 123; scaling may make them wider.
+pub(super) const MOST_NORMAL_BITS: u32 = 126;
+
 impl Plane {
     /// The plane through three lattice points with the normal `(b - a) x (c - a)`; `None` when they lie on a line.
     pub fn through(a: Site, b: Site, c: Site) -> Option<Plane> {
@@ -44,9 +47,29 @@ impl Plane {
     }
 
     fn new(normal: [i128; 3], through: Site) -> Plane {
-        let offset = dot(&normal, through);
+        Plane::of(normal, dot(&normal, through))
+    }
+
+    fn of(normal: [i128; 3], offset: Offset) -> Plane {
         let rounded = [normal[0] as f64, normal[1] as f64, normal[2] as f64, offset.to_f64()];
         Plane { normal, offset, rounded }
+    }
+
+    /// The plane of all points with their coordinates times 2^`exponent`; `None` where its normal would be too wide.
+    pub(crate) fn scaled(&self, exponent: i32) -> Option<Plane> {
+        // The normal times 2^up and the offset times 2^(up + exponent), with as few bits as possible.
+        let zeros = self.normal.iter().filter(|&&n| n != 0).map(|n| n.trailing_zeros()).min().unwrap_or(0);
+        let up = match self.offset.is_zero() {
+            true => -(zeros as i32),
+            false => (-(zeros as i32)).max(-(self.offset.trailing_zeros() as i32) - exponent),
+        };
+        let bits = |n: &i128| 128 - n.unsigned_abs().leading_zeros();
+        let widest = self.normal.iter().map(bits).max().unwrap_or(0);
+        if widest as i32 + up > MOST_NORMAL_BITS as i32 {
+            return None;
+        }
+        let normal = self.normal.map(|n| if up < 0 { n >> -up } else { n << up });
+        Some(Plane::of(normal, self.offset.times_power_of_two(up + exponent)?))
     }
 
     /// The same points with the other side positive.

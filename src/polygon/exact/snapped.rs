@@ -1,4 +1,4 @@
-use super::{Lattice, PointId, Points};
+use super::{Lattice, Place, PointId, Points, Site};
 use crate::math::Vec3;
 
 /// Points on a lattice that remember where they were given.
@@ -7,7 +7,7 @@ pub struct Snapped {
     /// The points; those that were added come first.
     pub points: Points,
     lattice: Lattice,
-    /// For the points that were added, their positions as given.
+    /// For points that were added, their positions as given; NaN for others.
     given: Vec<Vec3>,
     exact: bool,
 }
@@ -20,29 +20,52 @@ impl Snapped {
         Snapped { points: Points::default(), lattice, given: Vec::new(), exact: true }
     }
 
-    /// The lattice point nearest to a position. All must be added before other points are made.
+    /// The lattice point nearest to a position.
     pub fn add(&mut self, position: Vec3) -> PointId {
-        let id = self.points.site(self.lattice.snap(position));
+        self.add_at(self.lattice.snap(position), position)
+    }
+
+    /// A lattice point that was given as a position near it.
+    pub fn add_at(&mut self, site: Site, position: Vec3) -> PointId {
+        let id = self.points.site(site);
         self.exact &= self.lattice.to_model(self.points.rounded(id)) == position;
-        match self.given.get_mut(id.0 as usize) {
-            // Several positions may share a lattice point; which one stands for it must not depend on their order.
-            Some(known) => *known = lesser(*known, position),
-            None => self.given.push(position),
+        if self.given.len() <= id.0 as usize {
+            self.given.resize(id.0 as usize + 1, Vec3::NAN);
         }
+        // Several positions may share a lattice point; which one stands for it must not depend on their order.
+        let known = &mut self.given[id.0 as usize];
+        *known = if known.is_nan() { position } else { lesser(*known, position) };
         id
+    }
+
+    /// The lattice.
+    pub fn lattice(&self) -> Lattice {
+        self.lattice
+    }
+
+    /// Where a point is exactly, when that does not follow from its position.
+    pub(crate) fn hidden_place(&self, point: PointId) -> Option<Place> {
+        match self.points.fraction(point) {
+            Err(fraction) => Some(Place::Fraction(*fraction)),
+            Ok(site) => {
+                let position = self.position(point);
+                let is_there = self.lattice.holds(position) && self.lattice.snap(position) == site;
+                (!is_there).then_some(Place::Site(site))
+            }
+        }
     }
 
     /// The position of a point in model units: as it was given, or its exact place rounded to doubles.
     pub fn position(&self, point: PointId) -> Vec3 {
         match self.given.get(point.0 as usize) {
-            Some(&given) => given,
-            None => self.lattice.to_model(self.points.rounded(point)),
+            Some(&given) if !given.is_nan() => given,
+            _ => self.lattice.to_model(self.points.rounded(point)),
         }
     }
 
     /// Whether the point was added.
     pub fn is_given(&self, point: PointId) -> bool {
-        (point.0 as usize) < self.given.len()
+        self.given.get(point.0 as usize).is_some_and(|given| !given.is_nan())
     }
 
     /// Whether all added points lie on the lattice as they were given.

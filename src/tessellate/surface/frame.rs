@@ -110,11 +110,23 @@ impl Frame<'_> {
         };
         let strips = (total - 1e-9).ceil().max(f64::from(least)) as usize;
         let places = spread(&densities, self.domain[across], strips);
-        places.iter().enumerate().map(|(index, &place)| self.row(along, place, index % 2 == 0)).collect()
+        let mut rows: Vec<(f64, Vec<f64>)> = places
+            .iter()
+            .enumerate()
+            .map(|(index, &place)| (place, self.row(along, place, index % 2 == 0)))
+            .collect();
+        align(&mut rows, self.domain[along]);
+        let node = |(place, t): (f64, f64)| {
+            let at = if along == 0 { [t, place] } else { [place, t] };
+            self.nodes.push(Node { shared: None, at, free: None });
+            self.nodes.len() as Local - 1
+        };
+        let mut node = node;
+        rows.into_iter().map(|(place, row)| row.into_iter().map(|t| node((place, t))).collect()).collect()
     }
 
-    /// The inner vertices of a row; every other row is moved by half a segment.
-    fn row(&mut self, along: usize, place: f64, moved: bool) -> Vec<Local> {
+    /// Parameters of the inner vertices of a row; every other row is moved by half a segment.
+    fn row(&self, along: usize, place: f64, moved: bool) -> Vec<f64> {
         let across = 1 - along;
         let lines = self.table.cells[across];
         let [low, _] = self.domain[across];
@@ -124,18 +136,12 @@ impl Frame<'_> {
         let total = self.total_along(along, line);
         let least = if self.glued[along] { 3 } else { 1 };
         let segments = (total - 1e-9).ceil().max(f64::from(least)) as usize;
-        let parameters = if moved || segments == 1 {
+        if moved || segments == 1 {
             // The middles of segments are every other of half segments.
             spread(&densities, self.domain[along], 2 * segments).into_iter().step_by(2).collect()
         } else {
             spread(&densities, self.domain[along], segments)
-        };
-        let node = |t: f64| {
-            let at = if along == 0 { [t, place] } else { [place, t] };
-            self.nodes.push(Node { shared: None, at, free: None });
-            self.nodes.len() as Local - 1
-        };
-        parameters.into_iter().map(node).collect()
+        }
     }
 
     /// The strip between two chains that run the same way, the second one on the left of the first.
@@ -159,6 +165,30 @@ impl Frame<'_> {
                 j += 1;
             }
         }
+    }
+}
+
+/// Gives all rows the same ends, those nearest to the sides: between a side and ends that were not in line, triangles could
+/// turn over. Ends are moved there, or, where they are far from it, new ones put there.
+fn align(rows: &mut [(f64, Vec<f64>)], [low, high]: [f64; 2]) {
+    let ends = |end: fn(&Vec<f64>) -> f64| rows.iter().map(move |(_, row)| end(row)).collect::<Vec<f64>>();
+    let first = ends(|row| row[0]).into_iter().fold(f64::INFINITY, f64::min);
+    let last = ends(|row| row[row.len() - 1]).into_iter().fold(f64::NEG_INFINITY, f64::max);
+    for (_, row) in rows {
+        let count = row.len();
+        let step = if count > 1 { (row[count - 1] - row[0]) / (count - 1) as f64 } else { high - low };
+        if row[0] - first > 0.5 * step || (count == 1 && first < last) {
+            row.insert(0, first);
+        } else {
+            row[0] = first;
+        }
+        let end = row.len() - 1;
+        if last - row[end] > 0.5 * step || (end == 0 && first < last) {
+            row.push(last);
+        } else {
+            row[end] = last;
+        }
+        row.dedup();
     }
 }
 

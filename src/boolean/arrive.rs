@@ -1,0 +1,176 @@
+//! From meshes and solids to exact surfaces on one lattice.
+
+use super::body::Body;
+use super::world::{Facing, Labels, NONE, World};
+use super::{Birth, BooleanError, Operand};
+use crate::math::{Aabb, Vec3};
+use crate::mesh::{Defects, Mesh, Topology};
+use crate::polygon::exact::{Lattice, Origin, PointId, Points, Snapped};
+use std::borrow::Cow;
+
+/// Puts all operands on the finest lattice for them, or on one as coarse as `resolution` allows.
+pub(super) fn enter<'a>(
+    operands: &[Operand<'a>],
+    resolution: f64,
+) -> Result<(World<'a>, Vec<Body>), BooleanError> {
+    let closed = operands.iter().enumerate().map(|(i, operand)| topology_of(i, operand));
+    let topologies: Vec<Topology> = closed.collect::<Result<_, _>>()?;
+    let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
+    let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let mut world = World::new(Snapped::new(largest, resolution));
+    world.places.points.reserve(operands.iter().map(|operand| operand.mesh.positions.len()).sum());
+    world.labels = operands.iter().map(|operand| operand.labels).collect();
+    let rounds = world.places.lattice() != Lattice::fitting(largest);
+    let enter = |(i, (operand, topology))| {
+        let origin = origin_of(&world, operand, &topology, rounds);
+        Body::of_operand(&mut world, i, operand, &topology, origin.as_deref())
+    };
+    let bodies = (0..).zip(operands.iter().zip(topologies)).map(enter).collect();
+    Ok((world, bodies))
+}
+
+/// The topology of an operand, which must bound a volume.
+fn topology_of(index: usize, operand: &Operand<'_>) -> Result<Topology, BooleanError> {
+    let Mesh { positions, triangles } = operand.mesh;
+    let is_sound = |&[a, b, c]: &[u32; 3]| {
+        a != b && b != c && c != a && [a, b, c].iter().all(|&v| (v as usize) < positions.len())
+    };
+    let simple =
+        operand.checked || (triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()));
+    if simple {
+        let topology = Topology::new(triangles);
+        if operand.checked || topology.is_closed() {
+            return Ok(topology);
+        }
+    }
+    // What is not that simple may be closed all the same.
+    let defects = Defects::of(operand.mesh);
+    if defects.is_closed() {
+        Ok(Topology::new(triangles))
+    } else {
+        Err(BooleanError::NotClosed { operand: index, defects: Box::new(defects) })
+    }
+}
+
+/// The exact surface behind an operand, on the lattice of the world; `None` where its positions are all there is.
+///
+/// A coarse resolution is asked for to have positions rounded, so it is not circumvented. Where numbers would become too
+/// wide, positions are taken as they are.
+fn origin_of<'a>(
+    world: &World<'_>,
+    operand: &Operand<'a>,
+    topology: &Topology,
+    rounds: bool,
+) -> Option<Cow<'a, Origin>> {
+    let (origin, mesh) = (operand.origin?, operand.mesh);
+    let lattice = world.places.lattice();
+    let origin = match origin.lattice.exponent_in(lattice) {
+        0 => Cow::Borrowed(origin),
+        ..0 if rounds => return None,
+        _ => Cow::Owned(origin.at(lattice, &mesh.positions, &mesh.triangles)?),
+    };
+    labels_follow_edges(&origin, operand, topology).then_some(origin)
+}
+
+/// Whether labels differ across edges of faces only: a diagonal between points that are not on the lattice has no line
+/// on which labels could part.
+fn labels_follow_edges(origin: &Origin, operand: &Operand<'_>, topology: &Topology) -> bool {
+    let Labels::Each(labels) = operand.labels else { return true };
+    let mut is_fraction = vec![false; operand.mesh.positions.len()];
+    origin.fractions.iter().for_each(|&(vertex, _)| is_fraction[vertex as usize] = true);
+    origin.faces.iter().flat_map(|&(t, ..)| (0..3).map(move |i| 3 * t + i)).all(|half_edge| {
+        let corners = operand.mesh.triangles[half_edge as usize / 3];
+        let twin = topology.twin(half_edge);
+        twin == Topology::NONE
+            || labels[half_edge as usize / 3] == labels[twin as usize / 3]
+            || ![0, 1].iter().any(|i| is_fraction[corners[(half_edge as usize + i) % 3] as usize])
+            || origin.sides.binary_search_by_key(&half_edge, |side| side.0).is_ok()
+    })
+}
+
+impl Body {
+    /// Enters an operand into the world. Triangles without area on the lattice are dropped.
+    fn of_operand(
+        world: &mut World<'_>,
+        index: u32,
+        operand: &Operand<'_>,
+        topology: &Topology,
+        origin: Option<&Origin>,
+    ) -> Body {
+        let mesh = operand.mesh;
+        let ids = match origin {
+            Some(origin) => exact_points(world, &mesh.positions, origin),
+            None => mesh.positions.iter().map(|&p| world.places.add(p)).collect(),
+        };
+        let mut body = Body::default();
+        let mut slots = vec![NONE; mesh.triangles.len()];
+        for (t, triangle) in (0_u32..).zip(&mesh.triangles) {
+            let corners = triangle.map(|v| ids[v as usize]);
+            if has_area(world.points(), corners) {
+                slots[t as usize] = body.corners.len() as u32;
+                body.corners.push(corners);
+                body.births.push(Birth { operand: index, triangle: t });
+            }
+        }
+        body.twins = twins_of(topology, &slots);
+        body.bounds = Aabb::of(body.corners.iter().flatten().map(|&p| world.points().rounded(p)));
+        let embedded = origin.map_or(operand.embedded, |origin| origin.embedded);
+        body.embedded = embedded && body.corners.len() == mesh.triangles.len();
+        if let Some(origin) = origin {
+            body.remember(world, origin, &slots);
+        }
+        body
+    }
+
+    /// Takes over planes of faces and lines of edges.
+    fn remember(&mut self, world: &mut World<'_>, origin: &Origin, slots: &[u32]) {
+        let facings: Vec<Facing> = origin.planes.iter().map(|plane| world.facing(plane)).collect();
+        if !origin.faces.is_empty() {
+            self.facings = vec![Facing::UNKNOWN; self.corners.len()];
+        }
+        for &(t, plane, outward) in origin.faces.iter().filter(|face| slots[face.0 as usize] != NONE) {
+            let facing = facings[plane as usize];
+            self.facings[slots[t as usize] as usize] = if outward { facing } else { facing.turned() };
+        }
+        let lines: Vec<u32> = origin.lines.iter().map(|line| world.add_line(line)).collect();
+        if !origin.sides.is_empty() {
+            self.lines = vec![NONE; self.twins.len()];
+        }
+        for &(half_edge, line) in origin.sides.iter().filter(|side| slots[side.0 as usize / 3] != NONE) {
+            let slot = slots[half_edge as usize / 3];
+            self.lines[(3 * slot + half_edge % 3) as usize] = lines[line as usize];
+        }
+    }
+}
+
+/// The points of the vertices of a mesh that was rounded.
+fn exact_points(world: &mut World<'_>, positions: &[Vec3], origin: &Origin) -> Vec<PointId> {
+    let (mut sites, mut fractions) = (origin.sites.iter().peekable(), origin.fractions.iter().peekable());
+    let mut point = |(vertex, &position): (u32, &Vec3)| {
+        if let Some((_, site)) = sites.next_if(|site| site.0 == vertex) {
+            world.places.add_at(*site, position)
+        } else if let Some((_, fraction)) = fractions.next_if(|fraction| fraction.0 == vertex) {
+            world.places.points.fraction_point(fraction.numerators, fraction.denominator)
+        } else {
+            world.places.add(position)
+        }
+    };
+    (0..).zip(positions).map(&mut point).collect()
+}
+
+/// Twins of the triangles that have a slot, by slots.
+fn twins_of(topology: &Topology, slots: &[u32]) -> Vec<u32> {
+    let half_edges = (0..topology.len() as u32).filter(|&h| slots[h as usize / 3] != NONE);
+    let twin_slot = |half_edge: u32| match topology.twin(half_edge) {
+        Topology::NONE => NONE,
+        twin => match slots[twin as usize / 3] {
+            NONE => NONE,
+            slot => 3 * slot + twin % 3,
+        },
+    };
+    half_edges.map(twin_slot).collect()
+}
+
+fn has_area(points: &Points, corners: [PointId; 3]) -> bool {
+    (0..3).any(|axis| points.orientation(corners[0], corners[1], corners[2], axis) != 0)
+}

@@ -1,0 +1,155 @@
+//! Laws that booleans of any two solids obey, on random pairs, call after call.
+//!
+//! `OGEE_LAWS_COUNT` pairs, from `OGEE_LAWS_SEED` on; pair `n` is the same in every run. A third of the pairs lies on a
+//! small grid, a third is turned anyhow, and in a third one solid is turned by next to nothing against the other.
+
+#![allow(clippy::print_stdout, reason = "tests say how much they did")]
+
+#[allow(dead_code, unused_imports, reason = "each test program uses its part")]
+mod nasty;
+#[allow(dead_code, reason = "each test program uses its part")]
+mod oracle;
+#[allow(dead_code, reason = "each test program uses its part")]
+mod solids;
+
+use nasty::Case;
+use ogee::boolean::{self, Certificate, Combined, Tree, evaluate};
+use ogee::math::{Quat, Vec3, pow};
+use ogee::mesh::{Defects, Mesh, Solid, cuboid};
+use oracle::random::SplitMix;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+#[test]
+fn pairs_obey_the_laws() {
+    let setting = |name: &str, otherwise: u64| {
+        std::env::var(name).map_or(otherwise, |text| text.parse().expect("a number"))
+    };
+    let (seed, count) = (setting("OGEE_LAWS_SEED", 1), setting("OGEE_LAWS_COUNT", 1000));
+    let (mut failed, mut tally) = (Vec::new(), Tally::default());
+    for seed in seed..seed + count {
+        let outcome = catch_unwind(AssertUnwindSafe(|| broken_laws(seed, &mut tally)));
+        let broken = outcome.unwrap_or_else(|_| vec!["panicked".to_owned()]);
+        if !broken.is_empty() {
+            println!("pair {seed}: {}", broken.join("; "));
+            failed.push(seed);
+        }
+    }
+    println!("{count} pairs from seed {seed}, {} failed; {tally:?}", failed.len());
+    assert!(failed.is_empty(), "{} of {count} pairs failed: {failed:?}", failed.len());
+}
+
+/// What was seen beside the laws.
+#[derive(Debug, Default)]
+struct Tally {
+    booleans: usize,
+    crossings_found: usize,
+    crossings_left: usize,
+}
+
+/// Two solids and results of booleans, each looked at.
+struct Laws<'a> {
+    broken: Vec<String>,
+    tally: &'a mut Tally,
+    /// Whether all results are still the exact ones, unrepaired.
+    exact: bool,
+}
+
+fn broken_laws(seed: u64, tally: &mut Tally) -> Vec<String> {
+    let mut laws = Laws { broken: Vec::new(), tally, exact: true };
+    let [a, b] = pair(seed).map(|mesh| laws.sound(evaluate(&Tree::Leaf(0), &[&mesh]).expect("closed")));
+    let bounds = cuboid(Vec3::splat(-20.0), Vec3::splat(20.0));
+    let (either, both) = (laws.of(boolean::union, &a, &b), laws.of(boolean::intersection, &a, &b));
+    let rest = laws.of(boolean::difference, &a, &b);
+    laws.same_volume("a + b = (a or b) + (a and b)", &[&a, &b], &[&either, &both]);
+    laws.same_volume("a = (a - b) + (a and b)", &[&a], &[&rest, &both]);
+    let again = laws.of(boolean::difference, &a, &rest);
+    laws.same("a - (a - b) = a and b", &again, &both);
+    let whole = laws.of(boolean::union, &rest, &both);
+    laws.same("(a - b) or (a and b) = a", &whole, &a);
+    let outside = laws.of(boolean::difference, &bounds, &either);
+    let (not_a, not_b) =
+        (laws.of(boolean::difference, &bounds, &a), laws.of(boolean::difference, &bounds, &b));
+    let neither = laws.of(boolean::intersection, &not_a, &not_b);
+    laws.same("not (a or b) = not a and not b", &outside, &neither);
+    laws.broken
+}
+
+impl Laws<'_> {
+    fn of(&mut self, op: fn(&Solid, &Solid) -> Combined, a: &Solid, b: &Solid) -> Solid {
+        self.sound(op(a, b))
+    }
+
+    fn sound(&mut self, combined: Combined) -> Solid {
+        let Combined { solid, certificate, .. } = combined;
+        let Certificate { crossings_found, crossings_left, .. } = certificate;
+        self.tally.booleans += 1;
+        self.tally.crossings_found += usize::from(crossings_found > 0);
+        self.tally.crossings_left += usize::from(crossings_left > 0);
+        self.exact &= crossings_found == 0;
+        let defects = Defects::of(solid.mesh());
+        if !defects.is_solid() {
+            self.broken.push(format!("{defects:?}"));
+        }
+        solid
+    }
+
+    fn same_volume(&mut self, law: &str, left: &[&Solid], right: &[&Solid]) {
+        let volume = |solids: &[&Solid]| solids.iter().map(|solid| solid.measures().volume).sum::<f64>();
+        let (left, right) = (volume(left), volume(right));
+        // Coordinates are up to 20, so surfaces of up to some thousands move by an ulp of that.
+        if (left - right).abs() > 1e-11 {
+            self.broken.push(format!("{law}: {left} and {right}"));
+        }
+    }
+
+    /// The same shape: vertices at the same places to the last bit, unless some were repaired.
+    fn same(&mut self, law: &str, left: &Solid, right: &Solid) {
+        self.same_volume(law, &[left], &[right]);
+        if self.exact && places(left) != places(right) {
+            self.broken.push(format!("{law}: other vertices"));
+        }
+    }
+}
+
+fn places(solid: &Solid) -> Vec<[u64; 3]> {
+    let mut places: Vec<_> =
+        solid.positions().iter().map(|&p| (p + 0.0).to_array().map(f64::to_bits)).collect();
+    places.sort_unstable();
+    places.dedup();
+    places
+}
+
+/// Two closed meshes, which may cross themselves.
+fn pair(seed: u64) -> [Mesh; 2] {
+    let mut operands = Case::random(seed).operands.into_iter();
+    let a = operands.next().expect("at least one");
+    let b = operands.next().unwrap_or_else(|| a.clone());
+    let mut random = SplitMix::new(!seed);
+    let mut axis =
+        || Vec3::from_array([0; 3].map(|_| random.between(-9, 9) as f64)) + Vec3::new(0.1, 0.2, 0.3);
+    let (first, second) = (axis().normalize(), axis().normalize());
+    let turned = |mesh: &Mesh, axis: Vec3, angle: f64| {
+        let turn = Quat::from_axis_angle(axis, angle);
+        Mesh::new(mesh.positions.iter().map(|&p| turn * p).collect(), mesh.triangles.clone())
+    };
+    match seed % 3 {
+        0 => [a, b],
+        1 => [turned(&a, first, 1.0), turned(&b, second, 2.0)],
+        _ => {
+            let angle = pow(0.1, (4 + seed / 3 % 13) as f64);
+            [turned(&a, first, 1.0), turned(&turned(&b, first, 1.0), second, angle)]
+        }
+    }
+}
+
+/// A law that is broken is noticed.
+#[test]
+fn wrong_results_are_noticed() {
+    let mut tally = Tally::default();
+    let mut laws = Laws { broken: Vec::new(), tally: &mut tally, exact: true };
+    let [a, b] = [1.0, 1.0 + 1e-15].map(|size| cuboid(Vec3::ZERO, Vec3::splat(size)));
+    laws.same("bits", &a, &b);
+    assert_eq!(laws.broken.len(), 1);
+    laws.same_volume("volumes", &[&a], &[&a, &b]);
+    assert_eq!(laws.broken.len(), 2);
+}
