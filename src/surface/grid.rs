@@ -78,10 +78,10 @@ impl Strip {
             }
         }
         let mut cross = [[0.0; LANES]; 3];
-        for axis in 0..3 {
+        for (axis, cross) in cross.iter_mut().enumerate() {
             let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
             for lane in 0..LANES {
-                cross[axis][lane] = du[b][lane] * dv[c][lane] - du[c][lane] * dv[b][lane];
+                cross[lane] = du[b][lane] * dv[c][lane] - du[c][lane] * dv[b][lane];
             }
         }
         let mut square = [0.0; LANES];

@@ -141,7 +141,7 @@ impl<C: Curve<Point = Vec3>> Coons<C> {
         ];
         for (corner, (a, b)) in ends.iter().enumerate() {
             let gap = (*a - *b).norm();
-            if !(gap <= tolerance) {
+            if gap > tolerance || gap.is_nan() {
                 return Err(SurfaceError::Corner { corner, gap });
             }
         }

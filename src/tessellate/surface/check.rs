@@ -120,7 +120,7 @@ fn distance_from(surface: &dyn Surface, domain: [[f64; 2]; 2], place: Vec3, star
         }
         let new = surface.jet(next[0], next[1]);
         let nearer = (place - new.point).length();
-        if !(nearer < distance) {
+        if nearer >= distance || nearer.is_nan() {
             break;
         }
         let enough = nearer > MUCH * distance;

@@ -48,8 +48,8 @@ impl Frame<'_> {
             let backward: Vec<Local> = first.iter().rev().copied().collect();
             let left: Vec<Local> = rows.iter().rev().map(|row| row[0]).collect();
             let right: Vec<Local> = rows.iter().map(|row| row[row.len() - 1]).collect();
-            self.strip(&backward, &left, &mut triangles);
-            self.strip(last, &right, &mut triangles);
+            self.side_strip(&backward, &left, 1 - along, &mut triangles);
+            self.side_strip(last, &right, 1 - along, &mut triangles);
         }
         if along == 1 {
             // Exchanging u and v has turned the triangles over.
@@ -110,19 +110,17 @@ impl Frame<'_> {
         };
         let strips = (total - 1e-9).ceil().max(f64::from(least)) as usize;
         let places = spread(&densities, self.domain[across], strips);
-        let mut rows: Vec<(f64, Vec<f64>)> = places
+        let rows: Vec<(f64, Vec<f64>)> = places
             .iter()
             .enumerate()
             .map(|(index, &place)| (place, self.row(along, place, index % 2 == 0)))
             .collect();
-        align(&mut rows, self.domain[along]);
-        let node = |(place, t): (f64, f64)| {
+        let mut node = |place: f64, t: f64| {
             let at = if along == 0 { [t, place] } else { [place, t] };
             self.nodes.push(Node { shared: None, at, free: None });
             self.nodes.len() as Local - 1
         };
-        let mut node = node;
-        rows.into_iter().map(|(place, row)| row.into_iter().map(|t| node((place, t))).collect()).collect()
+        rows.into_iter().map(|(place, row)| row.into_iter().map(|t| node(place, t)).collect()).collect()
     }
 
     /// Parameters of the inner vertices of a row; every other row is moved by half a segment.
@@ -166,29 +164,54 @@ impl Frame<'_> {
             }
         }
     }
-}
 
-/// Gives all rows the same ends, those nearest to the sides: between a side and ends that were not in line, triangles could
-/// turn over. Ends are moved there, or, where they are far from it, new ones put there.
-fn align(rows: &mut [(f64, Vec<f64>)], [low, high]: [f64; 2]) {
-    let ends = |end: fn(&Vec<f64>) -> f64| rows.iter().map(move |(_, row)| end(row)).collect::<Vec<f64>>();
-    let first = ends(|row| row[0]).into_iter().fold(f64::INFINITY, f64::min);
-    let last = ends(|row| row[row.len() - 1]).into_iter().fold(f64::NEG_INFINITY, f64::max);
-    for (_, row) in rows {
-        let count = row.len();
-        let step = if count > 1 { (row[count - 1] - row[0]) / (count - 1) as f64 } else { high - low };
-        if row[0] - first > 0.5 * step || (count == 1 && first < last) {
-            row.insert(0, first);
-        } else {
-            row[0] = first;
+    /// Fills between a side and the ends of rows, which are not in line: both run along the axis, so what is between them is
+    /// a monotone polygon, and every corner is cut off as soon as it sticks out (Garey, Johnson, Preparata, Tarjan,
+    /// Triangulating a simple polygon, 1978).
+    fn side_strip(&self, right: &[Local], left: &[Local], axis: usize, triangles: &mut Vec<[Local; 3]>) {
+        let at = |local: Local| self.nodes[local as usize].at;
+        let upward = at(right[right.len() - 1])[axis] >= at(right[0])[axis];
+        let before = |a: Local, b: Local| (at(a)[axis] <= at(b)[axis]) == upward;
+        let (mut i, mut j) = (1, 0);
+        // What is not yet filled, from below, each with whether it is of the right chain.
+        let mut stack: Vec<(Local, bool)> = vec![(right[0], true)];
+        while i < right.len() || j < left.len() {
+            let ends = i + 1 == right.len() && j < left.len();
+            let of_right = j == left.len() || (i < right.len() && !ends && before(right[i], left[j]));
+            let new = if of_right { right[i] } else { left[j] };
+            if of_right {
+                i += 1;
+            } else {
+                j += 1;
+            }
+            let (top, top_of_right) = stack[stack.len() - 1];
+            let closes = i == right.len() && of_right;
+            if top_of_right != of_right || closes {
+                // The whole other chain is in sight.
+                for pair in stack.windows(2) {
+                    let (a, b) = (pair[0].0, pair[1].0);
+                    triangles.push(if top_of_right { [a, b, new] } else { [b, a, new] });
+                }
+                stack = vec![(top, top_of_right), (new, of_right)];
+                continue;
+            }
+            while let [.., (a, _), (b, _)] = stack[..] {
+                let triangle = if of_right { [a, b, new] } else { [b, a, new] };
+                // Where rows run along v the plane is seen from behind.
+                let [p, q, r] = triangle.map(at);
+                let sticks_out = if axis == 1 {
+                    turns_left([p, q, r], self.domain)
+                } else {
+                    turns_left([q, p, r], self.domain)
+                };
+                if !sticks_out {
+                    break;
+                }
+                triangles.push(triangle);
+                stack.pop();
+            }
+            stack.push((new, of_right));
         }
-        let end = row.len() - 1;
-        if last - row[end] > 0.5 * step || (end == 0 && first < last) {
-            row.push(last);
-        } else {
-            row[end] = last;
-        }
-        row.dedup();
     }
 }
 
@@ -207,6 +230,12 @@ pub(super) fn settled(triangle: [Node; 3]) -> [[f64; 2]; 3] {
         }
     }
     at
+}
+
+/// Whether three places run counter-clockwise, beyond rounding.
+fn turns_left([p, q, r]: [[f64; 2]; 3], [u, v]: [[f64; 2]; 2]) -> bool {
+    let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+    a[0] * b[1] - a[1] * b[0] > 1e-14 * (u[1] - u[0]) * (v[1] - v[0])
 }
 
 /// Inner ends of so many segments of a range, each of which holds as much of a density that is constant on equal cells.

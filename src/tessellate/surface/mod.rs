@@ -248,7 +248,12 @@ pub fn surfaces(
     layout.check_precision(options)?;
     let mut made = None;
     for least in ATTEMPTS {
-        let tessellation = attempt(&layout, options, least)?;
+        let tessellation = match (attempt(&layout, options, least), &made) {
+            (Ok(tessellation), _) => tessellation,
+            // What was made before is within the tolerance, whatever its edges.
+            (Err(_), Some(_)) => break,
+            (Err(error), None) => return Err(error),
+        };
         let defects = Defects::of(&tessellation.mesh);
         let sound = defects.duplicate_triangles == 0 && defects.non_manifold_edges <= layout.crowded_edges();
         made = Some(tessellation);

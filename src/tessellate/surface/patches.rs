@@ -22,7 +22,7 @@ use crate::surface::{Patch, Surface};
 pub fn patches(patches: &[Patch], options: &SurfaceOptions) -> Result<Tessellation, TessellationError> {
     /// Within this range neither products of three coordinates nor squares of their differences leave that of `f64`.
     const COMFORTABLE: std::ops::Range<f64> = 1e-90..1e90;
-    let points = || patches.iter().flat_map(|patch| patch.points());
+    let points = || patches.iter().flat_map(Patch::points);
     let size = points().map(|point| point.abs().max_element()).fold(0.0, f64::max);
     if size == 0.0 || COMFORTABLE.contains(&size) {
         return surfaces(&borrowed(patches), options);

@@ -59,7 +59,7 @@ pub(super) fn tessellate(
     let glued = [same(2, 3), same(0, 1)];
     let frame = Frame { table: &table, domain: piece.domain, nodes, sides, glued, stretch: STRETCH };
     let expected = 2.0 * frame.estimate(0).min(frame.estimate(1));
-    if !(expected <= room as f64) {
+    if expected > room as f64 || expected.is_nan() {
         let triangles = if expected.is_finite() { expected as u64 } else { u64::MAX };
         return Err(TessellationError::TooLarge { triangles, most: room });
     }

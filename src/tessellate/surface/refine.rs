@@ -199,7 +199,7 @@ impl<'a> Refinement<'a> {
             let twin = self.twins[half_edge as usize];
             match self.longest(twin / 3) {
                 Some((longer, next)) if longer > length && next != twin => {
-                    (length, half_edge) = (longer, next)
+                    (length, half_edge) = (longer, next);
                 }
                 _ => return Ok(half_edge),
             }
