@@ -57,10 +57,10 @@ fn face(words: &mut Words<'_>, vertices: usize, facets: &mut Facets) -> Result<(
     facets.end_face(at)
 }
 
-/// [`write`] with a unit normal for every corner; equal ones are written once.
+/// [`write()`] with a unit normal for every corner; equal ones are written once.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 ///
 /// # Panics
 /// When there are not as many normals as triangles.
