@@ -55,7 +55,10 @@ pub(super) fn tessellate(
     let surface = layout.surfaces[piece.surface];
     let table = Table::new(piece.surface, surface, piece.domain, options)?;
     let (nodes, sides) = border(layout, piece, edges);
-    let same = |a: usize, b: usize| piece.edges[a].edge == piece.edges[b].edge;
+    let same = |a: usize, b: usize| {
+        let edge = piece.edges[a].edge;
+        edge == piece.edges[b].edge && !layout.edges[edge].pole
+    };
     let glued = [same(2, 3), same(0, 1)];
     let frame = Frame { table: &table, domain: piece.domain, nodes, sides, glued, stretch: STRETCH };
     let expected = 2.0 * frame.estimate(0).min(frame.estimate(1));

@@ -190,8 +190,9 @@ impl<'a> Refinement<'a> {
     /// From a triangle over longest sides to one that is the longest on both of its own.
     fn edge_to_split(&self, t: u32) -> Result<u32, Stopped> {
         let nowhere = || Stopped::NotReached(self.parameters(self.triangles[t as usize])[0]);
-        // What fails without any width, on an edge that cannot be split, fails for ever.
-        if !self.turns_left(self.triangles[t as usize]) {
+        // What fails without any width, on an edge that cannot be split, fails for ever. At a pole parameters are any.
+        let has_pole = self.triangles[t as usize].iter().any(|&v| self.nodes[v as usize].free.is_some());
+        if !has_pole && !self.turns_left(self.triangles[t as usize]) {
             return Err(nowhere());
         }
         let (mut length, mut half_edge) = self.longest(t).ok_or_else(nowhere)?;
