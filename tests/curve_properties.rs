@@ -67,7 +67,7 @@ proptest! {
     #[test]
     fn lines_cross_no_more_often_than_the_polygon(curve in curve(), from in point(), to in point()) {
         prop_assume!((to - from).length() > 1e-3);
-        let found = intersect_line(&curve, from, to).unwrap();
+        let found = intersect_line(&curve, from, to, None).unwrap();
         let sides: Vec<bool> = curve.points().iter().map(|&p| orient2d(from, to, p) > 0.0).collect();
         let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
         prop_assert!(found.len() <= changes);

@@ -275,3 +275,17 @@ fn text_is_counted_and_passed_over() {
     let drawing = draw("<text>a</text><g><text>b</text><image/></g><title>c</title>");
     assert_eq!(drawing.ignored, [("image".to_owned(), 1), ("text".to_owned(), 2)]);
 }
+
+#[test]
+fn styles_are_obeyed_or_named() {
+    let drawing = draw(
+        "<style>/* .x { r: 1 } */ .a { fill: red; transform: scale(2) } @media print { .b { display: none } }</style>
+        <line x2='1' style='display: none !important'/><line x2='2' display='none' style='display:inline'/>
+        <line x2='3' style='stroke: red; transform: translate(3px)'/><circle r='1' style='cx: 5px; Transform: none'/>",
+    );
+    let ends: Vec<f64> =
+        drawing.shapes.iter().map(|shape| shape.path.subpaths[0].pieces()[0].end().x).collect();
+    assert_eq!(ends[..2], [2.0, 3.0]);
+    let expected = [("cx", 1), ("display", 1), ("transform", 3)];
+    assert_eq!(drawing.disobeyed, expected.map(|(name, count)| (name.to_owned(), count)));
+}

@@ -9,6 +9,8 @@ const HOMES: &[(&str, &[&str])] = &[
     ("clap", &["cli"]),
     ("csv", &["io/csv.rs"]),
     ("dejavu", &["plot/text.rs"]),
+    ("dashu_int", &["numeric/integer_polynomial.rs"]),
+    ("dashu_ratio", &["numeric/rational.rs"]),
     ("glam", &["math"]),
     ("indicatif", &["cli"]),
     ("libm", &["math"]),

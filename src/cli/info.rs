@@ -1,5 +1,5 @@
 use super::build::print;
-use super::input::{Kind, Source};
+use super::input::{Kind, Source, warn_of_styles};
 use super::model::{self, Times};
 use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
@@ -66,6 +66,7 @@ fn drawing(source: &Source, mut summary: Summary, json: bool, terminal: &Termina
     for (name, count) in &drawing.ignored {
         terminal.warn(format!("{source}: {count} {name} elements are not paths and have no measures here"));
     }
+    warn_of_styles(source, &drawing, terminal);
     let measured = |shape: &DrawnShape| {
         let error =
             |error| Stop::about(source, format_args!("line {}, {}: {error}", shape.line, shape.element));

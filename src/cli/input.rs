@@ -1,6 +1,7 @@
 //! What the program reads: scripts and meshes, from files or standard input.
 
 use super::stop::Stop;
+use super::terminal::Terminal;
 use crate::io as formats;
 use crate::io::Format;
 use crate::io::svg::Drawing;
@@ -100,6 +101,13 @@ impl fmt::Display for Source {
             Source::Stdin => f.write_str("standard input"),
             Source::File(path) => path.display().fmt(f),
         }
+    }
+}
+
+/// Says which declarations of style sheets are not obeyed.
+pub(super) fn warn_of_styles(source: &Source, drawing: &Drawing, terminal: &Terminal) {
+    for (name, count) in &drawing.disobeyed {
+        terminal.warn(format!("{source}: `{name}` in styles is not obeyed (declared {count}×)"));
     }
 }
 

@@ -242,12 +242,16 @@ impl Arc {
         check_tolerance(tolerance)?;
         let ([long, _], _) = self.half_axes();
         let radius = hypot(long.x, long.y);
-        let finest = 16.0 * f64::EPSILON * (radius + self.center.abs().max_element());
+        let finest = self.finest();
         if tolerance < finest {
             return Err(CurveError::ToleranceTooFine { value: tolerance, finest });
         }
         // What rounding may add is kept back.
-        let count = self.count((tolerance - 0.5 * finest) / radius);
+        self.in_parts(self.count((tolerance - 0.5 * finest) / radius))
+    }
+
+    /// That many cubics, as [`Arc::cubics`] makes them.
+    pub(super) fn in_parts(&self, count: usize) -> Result<Vec<Cubic<Vec2>>, CurveError> {
         let step = self.sweep / count as f64;
         let arm = 4.0 / 3.0 * tan(0.25 * step);
         let corner = |k: usize| match k {
@@ -263,8 +267,14 @@ impl Arc {
         (0..count).map(cubic).collect()
     }
 
+    /// The finest tolerance that [`Arc::cubics`] takes: rounding of the coordinates.
+    pub(super) fn finest(&self) -> f64 {
+        let ([long, _], _) = self.half_axes();
+        16.0 * f64::EPSILON * (hypot(long.x, long.y) + self.center.abs().max_element())
+    }
+
     /// How many cubics stay within this distance on the unit circle.
-    fn count(&self, tolerance: f64) -> usize {
+    pub(super) fn count(&self, tolerance: f64) -> usize {
         let turn = self.sweep.abs();
         let error = |count: f64| {
             let quarter = 0.25 * turn / count;

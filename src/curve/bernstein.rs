@@ -2,6 +2,7 @@
 
 use super::subdivide::restrict;
 use crate::numeric::roots::bracketed;
+use crate::numeric::scale_by_power_of_two;
 
 /// A root of a polynomial, or as many as rounding cannot tell apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -179,19 +180,43 @@ pub(super) fn inner_product<P: crate::math::Blend>(a: &[P], b: &[P]) -> Vec<f64>
     product_with(a, b, P::inner)
 }
 
-/// The product of two polynomials under any bilinear map.
+/// The product of two polynomials under any bilinear map. Binomials of high degrees are kept with their exponents.
 pub(super) fn product_with<P: Copy, Q: Copy>(a: &[P], b: &[Q], times: impl Fn(P, Q) -> f64) -> Vec<f64> {
     let (n, m) = (a.len() - 1, b.len() - 1);
-    let (binomials_a, binomials_b, binomials) = (binomials(n), binomials(m), binomials(n + m));
+    let (of_a, of_b, of_product) = (binomials_apart(n), binomials_apart(m), binomials_apart(n + m));
     let mut product = vec![0.0; n + m + 1];
     for i in 0..=n {
         for j in 0..=m {
-            let weight = binomials_a[i] * binomials_b[j] / binomials[i + j];
+            let ((x, p), (y, q), (z, r)) = (of_a[i], of_b[j], of_product[i + j]);
+            let weight = scale_by_power_of_two(x * y / z, p + q - r);
             product[i + j] += weight * times(a[i], b[j]);
         }
     }
     product
 }
+
+/// C(n, 0) to C(n, n), each as a factor of moderate size and the exponent of a power of two.
+fn binomials_apart(n: usize) -> Vec<(f64, i32)> {
+    let mut row = vec![(1.0, 0); n + 1];
+    for k in 0..n {
+        let (factor, exponent) = row[k];
+        let next = factor * (n - k) as f64 / (k + 1) as f64;
+        // One power of two at a time is enough: powers of 2^300 move in before anything over- or underflows.
+        row[k + 1] = if next > LARGE {
+            (next / LARGE, exponent + LARGE_EXPONENT)
+        } else if next < 1.0 && exponent > 0 {
+            (next * LARGE, exponent - LARGE_EXPONENT)
+        } else {
+            (next, exponent)
+        };
+    }
+    row
+}
+
+/// Below the root of the largest number.
+const LARGE_EXPONENT: i32 = 300;
+/// 2 to that power.
+const LARGE: f64 = f64::from_bits(((LARGE_EXPONENT + 1023) as u64) << 52);
 
 /// C(n, 0) to C(n, n).
 pub(super) fn binomials(n: usize) -> Vec<f64> {

@@ -10,7 +10,7 @@
 use super::bernstein::{binomials, inner_product, roots};
 use super::evaluate::{de_casteljau, triangle};
 use super::subdivide::{derivative, reciprocal_powers, restrict, with_unit_size};
-use super::{Bernstein, Bounded, CurveError, Spline, check_tolerance};
+use super::{Bernstein, Bounded, CurveError, Spline, check_tolerance, length_cubic};
 use crate::math::Blend;
 use crate::numeric::quadrature::{GAUSS_16, error_bound, integrate};
 use crate::numeric::roots::bracketed;
@@ -21,6 +21,14 @@ use crate::numeric::roots::bracketed;
 /// [`CurveError::Tolerance`] when `accuracy` is not a positive number, [`CurveError::NotFinite`] when the length
 /// exceeds the range of `f64`.
 pub fn length<C: Bernstein>(curve: &C, accuracy: f64) -> Result<Bounded<f64>, CurveError> {
+    if let (2, &[a, b, c, d]) = (C::Vector::DIMENSION, curve.points()) {
+        check_tolerance(accuracy)?;
+        if let Some(length) =
+            length_cubic::length([a, b, c, d].map(|p| [p.component(0), p.component(1)]), accuracy)
+        {
+            return Ok(length);
+        }
+    }
     Ok(ArcLength::new(curve, accuracy)?.total())
 }
 

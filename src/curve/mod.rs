@@ -9,6 +9,10 @@
 //! and intersections are classified. There is no hidden epsilon: a tolerance is an argument, and where none is given
 //! the bound is that of the rounding of `f64` at the size of the curve's hull.
 //!
+//! What curves stand for others say how far they are from them ([`Fitted`]): [`fit`] follows any curve that bounds its own
+//! distance from a cubic, [`fit_points`] passes points, [`simplify`] keeps a path's corners and little else,
+//! [`offset`](fn@offset) draws parallels with all of their cusps, and [`stroke`](fn@stroke) outlines that have no holes.
+//!
 //! ```
 //! use ogee::curve::{Bernstein, Cubic};
 //! use ogee::math::Vec2;
@@ -30,16 +34,27 @@ mod bounds;
 mod closed;
 mod convert;
 mod cubic;
+mod dash;
 mod differential;
 pub mod evaluate;
+mod evolute;
+mod fit;
+mod frame;
 mod interpolate;
 mod intersect;
 mod length;
+mod length_cubic;
 mod nearest;
+mod nearest_cubic;
+mod offset;
 mod path;
+mod pen;
 mod rational;
 mod reduce;
+mod simplify;
 mod spline;
+mod strand;
+mod stroke;
 mod subdivide;
 
 pub use arc::Arc;
@@ -51,14 +66,19 @@ pub use closed::{Moments, Winding, moments, winding};
 pub use convert::monomials;
 pub use cubic::CubicShape;
 pub use differential::{Curve, Frame, Jet, Tangents, rotation_minimizing_frames, tangents};
+pub use fit::{Corners, Fitted, PointFit, Ray, Side, Source, find_corners, fit, fit_points, schneider};
 pub use interpolate::{Boundary, Spacing};
 pub use intersect::{Contact, Meeting, intersect, intersect_line, self_intersections};
 pub use length::{ArcLength, length, speed_minima};
 pub use nearest::{Nearest, nearest, nearest_all};
+pub use offset::offset;
 pub use path::{Path, Piece, Subpath};
+pub use pen::{Cap, Join};
 pub use rational::Rational;
 pub use reduce::{Reduced, reduce};
+pub use simplify::simplify;
 pub use spline::{Continuity, Joint, Spline};
+pub use stroke::{Stroke, stroke};
 pub use subdivide::{Joined, join};
 
 use crate::math::Blend;
@@ -120,11 +140,21 @@ pub enum CurveError {
     },
     /// A path that must be closed is open.
     Open,
-    /// The degree is too high for this algorithm.
-    Degree {
-        /// The degree.
-        actual: usize,
-        /// The highest that it takes.
+    /// A distance or width is infinite or NaN, or not positive where it must be.
+    Distance {
+        /// What was asked for.
+        value: f64,
+    },
+    /// The dashes of a stroke are not of any length together, or one is negative, infinite or NaN.
+    Dash {
+        /// Index of the dash; of the last when they sum up to 0.
+        index: usize,
+    },
+    /// A path would be cut into too many dashes.
+    TooManyDashes {
+        /// About how many.
+        count: f64,
+        /// The most that are drawn.
         most: usize,
     },
     /// Two curves run so near to one another for so long, without being one, that their meetings cannot be told apart.
@@ -152,7 +182,11 @@ impl fmt::Display for CurveError {
                 write!(f, "piece {piece} does not start where the one before it ends")
             }
             CurveError::Open => write!(f, "the path is not closed"),
-            CurveError::Degree { actual, most } => write!(f, "degree {actual} where {most} is the highest"),
+            CurveError::Distance { value } => write!(f, "{value} is no distance"),
+            CurveError::Dash { index } => write!(f, "dash {index} is not a length"),
+            CurveError::TooManyDashes { count, most } => {
+                write!(f, "about {count} dashes where {most} is the most")
+            }
             CurveError::TooClose => {
                 write!(f, "the curves are too close to one another to tell where they meet")
             }
@@ -169,12 +203,6 @@ fn check_finite<P: Blend>(points: &[P]) -> Result<(), CurveError> {
         Some(index) => Err(CurveError::NotFinite { index }),
         None => Ok(()),
     }
-}
-
-/// Checks that products of two such curves have binomials that do not overflow.
-fn check_degree(actual: usize) -> Result<(), CurveError> {
-    const MOST: usize = 500;
-    if actual <= MOST { Ok(()) } else { Err(CurveError::Degree { actual, most: MOST }) }
 }
 
 /// Checks that a tolerance or accuracy is a positive finite number.

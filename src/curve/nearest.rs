@@ -2,8 +2,9 @@ use super::bernstein::{Roots, inner_product, roots};
 use super::bounded::eval_bounded;
 use super::differential::jet;
 use super::evaluate::de_casteljau;
+use super::nearest_cubic;
 use super::subdivide::{derivative, reciprocal_powers};
-use super::{Bernstein, Bounded, CurveError, check_degree};
+use super::{Bernstein, Bounded, CurveError};
 use crate::math::Blend;
 
 /// A point of a curve whose distance from a given point is a local minimum.
@@ -20,11 +21,17 @@ pub struct Nearest<P> {
 /// The nearest point of a curve; of several at the same distance the one with the smallest parameter.
 ///
 /// Never the wrong branch: all roots of the derivative of the squared distance are isolated in Bernstein form
-/// (Descartes' rule, hull property), so that no minimum is missed.
+/// (Descartes' rule, hull property), so that no minimum is missed; for cubics only those that may be the nearest.
+/// The time grows with the square of the degree, to seconds at degree 2000.
 ///
 /// # Errors
-/// [`CurveError::NotFinite`] when the point is not finite, [`CurveError::Degree`] above degree 500.
+/// [`CurveError::NotFinite`] when the point is not finite.
 pub fn nearest<C: Bernstein>(curve: &C, point: C::Vector) -> Result<Nearest<C::Vector>, CurveError> {
+    if let &[a, b, c, d] = curve.points() {
+        let view = View::new(curve, point)?;
+        let (t, distance) = nearest_cubic::nearest(&[a, b, c, d].map(|p| view.inward(p)));
+        return Ok(view.outward(curve, t, distance));
+    }
     let all = nearest_all(curve, point)?;
     let best = all.into_iter().reduce(|a, b| if b.distance.value < a.distance.value { b } else { a });
     // A curve has at least one point that no other is nearer than.
@@ -41,23 +48,47 @@ pub fn nearest<C: Bernstein>(curve: &C, point: C::Vector) -> Result<Nearest<C::V
 /// # Errors
 /// As [`nearest`].
 pub fn nearest_all<C: Bernstein>(curve: &C, point: C::Vector) -> Result<Vec<Nearest<C::Vector>>, CurveError> {
-    if !point.finite() {
-        return Err(CurveError::NotFinite { index: 0 });
+    let view = View::new(curve, point)?;
+    let offsets: Vec<C::Vector> = curve.points().iter().map(|&p| view.inward(p)).collect();
+    Ok(minima(&offsets).into_iter().map(|(t, distance)| view.outward(curve, t, distance)).collect())
+}
+
+/// A curve as seen from a point: near size 1.
+struct View<P> {
+    point: P,
+    /// Factors that bring differences to unit size, the first before they are taken.
+    scale: [f64; 3],
+}
+
+impl<P: Blend> View<P> {
+    fn new<C: Bernstein<Vector = P>>(curve: &C, point: P) -> Result<View<P>, CurveError> {
+        if !point.finite() {
+            return Err(CurveError::NotFinite { index: 0 });
+        }
+        // Differences of huge numbers may overflow, quarters of tiny ones lose digits.
+        let size = |scale: f64| {
+            let offsets = curve.points().iter().map(|&p| (p * scale - point * scale).max_abs());
+            offsets.fold(0.0, f64::max)
+        };
+        let whole = size(1.0);
+        let (quarter, size) = if whole < 1e300 { (1.0, whole) } else { (0.25, size(0.25)) };
+        let [first, second] = if size > 0.0 { reciprocal_powers(size) } else { [1.0, 1.0] };
+        Ok(View { point, scale: [quarter, first, second] })
     }
-    check_degree(curve.degree())?;
-    // Seen from the point and near size 1; quarters, since differences may overflow.
-    let quarters: Vec<C::Vector> = curve.points().iter().map(|&p| p * 0.25 - point * 0.25).collect();
-    let size = quarters.iter().fold(0.0, |most: f64, p| most.max(p.max_abs()));
-    let [first, second] = if size > 0.0 { reciprocal_powers(size) } else { [1.0, 1.0] };
-    let offsets: Vec<C::Vector> = quarters.iter().map(|&p| p * first * second).collect();
-    let found = minima(&offsets);
-    let back = |x: f64| x / first / second * 4.0;
-    let at = |(t, distance): (f64, Bounded<f64>)| Nearest {
-        t,
-        point: curve.eval(t),
-        distance: Bounded { value: back(distance.value), error: back(distance.error) },
-    };
-    Ok(found.into_iter().map(at).collect())
+
+    #[inline]
+    fn inward(&self, p: P) -> P {
+        let [quarter, first, second] = self.scale;
+        (p * quarter - self.point * quarter) * first * second
+    }
+
+    #[inline]
+    fn outward<C: Bernstein<Vector = P>>(&self, curve: &C, t: f64, distance: Bounded<f64>) -> Nearest<P> {
+        let [quarter, first, second] = self.scale;
+        let back = |x: f64| x / first / second / quarter;
+        let distance = Bounded { value: back(distance.value), error: back(distance.error) };
+        Nearest { t, point: curve.eval(t), distance }
+    }
 }
 
 /// Local minima of the distance from the origin of a curve of about unit size.

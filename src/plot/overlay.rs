@@ -6,6 +6,7 @@ use crate::curve::{
     self_intersections,
 };
 use crate::math::Vec2;
+use crate::par;
 
 /// What to show of curves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -291,34 +292,42 @@ impl Subject<'_> {
             }));
         }
         parts.sort_by(|a, b| a.2.min.x.total_cmp(&b.2.min.x));
-        let (mut points, mut unresolved) = (Vec::new(), 0);
-        for (k, (part, curve, bounds)) in parts.iter().enumerate() {
-            if !part.straight {
-                let own = self_intersections(curve).unwrap_or_default();
-                points.extend(own.iter().map(|meeting| meeting.point));
-            }
-            for (other, second, around) in &parts[k + 1..] {
-                if around.min.x > bounds.max.x {
-                    break;
-                }
-                if around.min.y > bounds.max.y || around.max.y < bounds.min.y {
-                    continue;
-                }
-                match intersect(curve, second, None) {
-                    Ok(meetings) => points.extend(meetings.iter().flat_map(|meeting| {
-                        let overlap = meeting.contact == Contact::Overlap;
-                        let ends =
-                            [(meeting.first[0], meeting.second[0]), (meeting.first[1], meeting.second[1])];
-                        let ends = if overlap { &ends[..] } else { &ends[..1] };
-                        let kept = ends.iter().filter(|(s, t)| overlap || !part.joins(other, *s, *t));
-                        kept.map(|(s, _)| curve.eval(*s)).collect::<Vec<_>>()
-                    })),
-                    Err(_) => unresolved += 1,
-                }
-            }
-        }
+        let places: Vec<usize> = (0..parts.len()).collect();
+        let found = par::map_above(PARALLEL_FROM, &places, |&k| meetings(&parts[k], &parts[k + 1..]));
+        let unresolved = found.iter().map(|(_, unresolved)| unresolved).sum();
+        let points = found.into_iter().flat_map(|(points, _)| points).collect();
         (Layer::new(Content::Marks(Mark::Cross, points), Ink::Accent).named("intersections"), unresolved)
     }
+}
+
+/// From so many pieces on their meetings are found on all threads: each is some microseconds of work.
+const PARALLEL_FROM: usize = 64;
+
+type Placed = (Part, Cubic<Vec2>, Bounds<Vec2>);
+
+/// Where a piece meets itself and those after it, which are in order of their smallest x; and how many of those could
+/// not be decided.
+fn meetings((part, curve, bounds): &Placed, others: &[Placed]) -> (Vec<Vec2>, usize) {
+    let own = if part.straight { Vec::new() } else { self_intersections(curve).unwrap_or_default() };
+    let (mut points, mut unresolved) = (own.iter().map(|meeting| meeting.point).collect::<Vec<_>>(), 0);
+    let near = others.iter().take_while(|(_, _, around)| around.min.x <= bounds.max.x);
+    for (other, second, around) in near {
+        let beside = around.min.y > bounds.max.y || around.max.y < bounds.min.y;
+        if beside || part.meets_plainly((curve, bounds), other, (second, around)) {
+            continue;
+        }
+        match intersect(curve, second, None) {
+            Ok(meetings) => points.extend(meetings.iter().flat_map(|meeting| {
+                let overlap = meeting.contact == Contact::Overlap;
+                let ends = [(meeting.first[0], meeting.second[0]), (meeting.first[1], meeting.second[1])];
+                let ends = if overlap { &ends[..] } else { &ends[..1] };
+                let kept = ends.iter().filter(|(s, t)| overlap || !part.joins(other, *s, *t));
+                kept.map(|(s, _)| curve.eval(*s)).collect::<Vec<_>>()
+            })),
+            Err(_) => unresolved += 1,
+        }
+    }
+    (points, unresolved)
 }
 
 /// A piece and where it stands in its subpath.
@@ -332,15 +341,35 @@ struct Part {
 }
 
 impl Part {
+    /// Whether the other piece is the next one.
+    fn precedes(&self, other: &Part) -> bool {
+        let next = self.index + 1 == other.index;
+        let around = self.closed && other.index == 0 && self.index + 1 == self.count;
+        self.path == other.path && (next || around)
+    }
+
     /// Whether these parameters are the joint of this piece with a neighbour.
     fn joins(&self, other: &Part, s: f64, t: f64) -> bool {
-        let follows = |before: &Part, after: &Part, end: f64, start: f64| {
-            let next = before.index + 1 == after.index
-                || (before.closed && after.index == 0 && before.index + 1 == before.count);
-            // Parameters at a tangent joint are good to half of the digits.
-            next && end > 1.0 - 1e-6 && start < 1e-6
+        // Parameters at a tangent joint are good to half of the digits.
+        let follows = |end: f64, start: f64| end > 1.0 - 1e-6 && start < 1e-6;
+        (self.precedes(other) && follows(s, t)) || (other.precedes(self) && follows(t, s))
+    }
+
+    /// Whether two pieces are neighbours that meet nowhere but at their joint, as their boxes show: they have but that
+    /// point in common. So it is for most joints of smooth paths and of polygons.
+    fn meets_plainly(
+        &self,
+        (curve, bounds): (&Cubic<Vec2>, &Bounds<Vec2>),
+        other: &Part,
+        (second, around): (&Cubic<Vec2>, &Bounds<Vec2>),
+    ) -> bool {
+        let joint = match (self.precedes(other), other.precedes(self)) {
+            (true, false) => curve.end(),
+            (false, true) => second.end(),
+            _ => return false,
         };
-        self.path == other.path && (follows(self, other, s, t) || follows(other, self, t, s))
+        let (low, high) = (bounds.min.max(around.min), bounds.max.min(around.max));
+        low == joint && high == joint
     }
 }
 
@@ -354,5 +383,58 @@ fn smoothness(before: &Piece, after: &Piece) -> usize {
         false => 0,
         true if (a - b).abs() <= 1e-6 * a.abs().max(b.abs()) => 2,
         true => 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crosses(subpaths: Vec<Subpath>) -> Vec<Vec2> {
+        let show = Show { intersections: true, ..Show::default() };
+        let found = overlay(&[&Path { subpaths }], &show);
+        assert_eq!(found.unresolved, 0);
+        found.layers.into_iter().fold(Vec::new(), |points, layer| match layer.content {
+            Content::Marks(_, marks) => [points, marks].concat(),
+            _ => points,
+        })
+    }
+
+    fn polyline(points: &[(f64, f64)], closed: bool) -> Subpath {
+        Subpath::polyline(&points.iter().copied().map(Vec2::from).collect::<Vec<_>>(), closed)
+            .expect("a polyline")
+    }
+
+    #[test]
+    fn joints_of_neighbours_are_no_intersections() {
+        let circle = crate::curve::Arc::ellipse(Vec2::ZERO, Vec2::ONE).expect("a circle");
+        let loops = vec![
+            Subpath::closed(vec![circle.into()]).expect("a loop"),
+            polyline(&[(5.0, 0.0), (7.0, 0.0), (7.0, 2.0), (4.0, 3.0)], true),
+            // Pieces that lean back over their joint, and a loop of two pieces.
+            polyline(&[(10.0, 0.0), (12.0, 0.0), (11.0, 1.0), (13.0, 1.5)], false),
+            polyline(&[(20.0, 0.0), (22.0, 1.0), (21.0, 3.0)], true),
+        ];
+        assert!(crosses(loops).is_empty());
+        // Neighbours that overlap or cross apart from their joint are told.
+        assert!(!crosses(vec![polyline(&[(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)], false)]).is_empty());
+        assert_eq!(crosses(vec![polyline(&[(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)], true)]).len(), 1);
+    }
+
+    #[test]
+    fn all_crossings_are_found_in_order_on_any_number_of_threads() {
+        let line = |k: usize, across: bool| {
+            let (at, end) = (k as f64 + 0.5, 10.0);
+            let ends = if across { [(0.0, at), (end, at)] } else { [(at, 0.0), (at, end)] };
+            polyline(&ends, false)
+        };
+        let few: Vec<Subpath> = (0..10).flat_map(|k| [line(k, true), line(k, false)]).collect();
+        // More pieces, far away, that meet nothing: so many that threads share the work.
+        let strangers =
+            (0..PARALLEL_FROM).map(|k| polyline(&[(100.0 + k as f64, 0.0), (100.5 + k as f64, 0.0)], false));
+        let many: Vec<Subpath> = few.iter().cloned().chain(strangers).collect();
+        let alone = crosses(few);
+        assert_eq!(alone.len(), 100);
+        assert_eq!(crosses(many), alone);
     }
 }

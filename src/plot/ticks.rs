@@ -28,7 +28,9 @@ fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
         let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
         if last - first < most as f64 {
             let values = (0..=(last - first).max(-1.0) as i64).map(|k| (first + k as f64) * step);
-            let values: Vec<f64> = values.take(most).collect();
+            let mut values: Vec<f64> = values.take(most).collect();
+            // Steps below the rounding of the numbers.
+            values.dedup();
             let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
             let label = |&place: &f64| Tick { place, label: label(place, exponent, largest) };
             return values.iter().map(label).collect();
@@ -46,9 +48,21 @@ fn label(value: f64, exponent: i32, largest: f64) -> String {
     if value.abs() < 0.5 * power_of_ten(exponent) {
         return "0".to_owned();
     }
-    let digits = (size - exponent).clamp(0, 15) as usize;
-    let mantissa = format!("{:.*}", digits, value / power_of_ten(size));
-    format!("{}·10{}", minus(&mantissa), superscript(size))
+    format!("{}·10{}", minus(&mantissa(value, exponent, size)), superscript(size))
+}
+
+/// A number to a power of ten, less another power that is taken out of it: from its exact decimals, so that neighbours
+/// differ where the numbers do.
+fn mantissa(value: f64, exponent: i32, size: i32) -> String {
+    let rounded = |places: i32| format!("{:.*e}", places.max(0) as usize, value.abs());
+    let power = |text: &str| text.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0);
+    let text = rounded(power(&rounded(17)) - exponent);
+    let front = "0".repeat((size - power(&text)).max(0) as usize);
+    let digits = front + &text.split('e').next().unwrap_or_default().replace('.', "");
+    let (before, after) = digits.split_at(1);
+    let sign = if value < 0.0 { "-" } else { "" };
+    let point = if size > exponent { "." } else { "" };
+    format!("{sign}{before}{point}{}", &after[..after.len().min((size - exponent).max(0) as usize)])
 }
 
 fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
@@ -134,10 +148,32 @@ mod tests {
             (0.0, 2.5e7, 4, "0 1·10⁷ 2·10⁷"),
             (-1e-9, 1e-9, 3, "−1·10⁻⁹ 0 1·10⁻⁹"),
             (1e8, 1e8 + 1.0, 3, "1.000000000·10⁸ 1.000000005·10⁸ 1.000000010·10⁸"),
+            (1e9, 1e9 + 1e-3, 3, "1.0000000000000·10⁹ 1.0000000000005·10⁹ 1.0000000000010·10⁹"),
+            (-1e9, -1e9 + 1e-3, 3, "−1.0000000000000·10⁹ −0.9999999999995·10⁹ −0.9999999999990·10⁹"),
+            (999_999_999.999, 1e9, 2, "0.999999999999·10⁹ 1.000000000000·10⁹"),
+            (1e300, 1.5e300, 3, "1.0·10³⁰⁰ 1.2·10³⁰⁰ 1.4·10³⁰⁰"),
             (7.1, 7.9, 1, "7.5"),
             (0.001, 0.0041, 5, "0.001 0.002 0.003 0.004"),
         ] {
             assert_eq!(labels(Scale::Linear, low, high, most), expected, "{low} to {high}");
+        }
+    }
+
+    /// Down to the rounding of the numbers themselves.
+    #[test]
+    fn far_from_the_origin_labels_still_differ() {
+        for offset in [1e3, -1e6, 1e9, 1e15, -1e-5, 3.7e200] {
+            for span in [1e-3, 1e-9, 1e-12, 1e-14, 4e-16, 1e-17] {
+                let (low, high) = (offset, offset + f64::abs(offset) * span);
+                if low == high {
+                    continue;
+                }
+                let found = ticks(Scale::Linear, low, high, 5);
+                for pair in found.windows(2) {
+                    assert!(pair[0].place < pair[1].place, "{low} to {high}: {found:?}");
+                    assert_ne!(pair[0].label, pair[1].label, "{low} to {high}: {found:?}");
+                }
+            }
         }
     }
 

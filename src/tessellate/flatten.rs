@@ -82,9 +82,13 @@ fn append<C: Bernstein>(curve: &C, tolerance: f64, [low, high]: [f64; 2], out: &
     let shift = shift_to_unit(curve.points());
     let scaled = |x: f64, shift: i32| if shift == 0 { x } else { scale_by_power_of_two(x, shift) };
     // Scaling towards size 1 keeps numbers finite.
-    let unit = curve.map(|point| point.map(|x| scaled(x, shift))).unwrap_or_else(|_| curve.clone());
-    let mut walk = Walk::new(&unit, scaled(tolerance, shift));
-    for stop in stops(&unit) {
+    let moved = if shift == 0 { None } else { curve.map(|point| point.map(|x| scaled(x, shift))).ok() };
+    let unit = moved.as_ref().unwrap_or(curve);
+    let expected = expected_chords(unit.points(), scaled(tolerance, shift));
+    out.points.reserve(expected);
+    out.parameters.reserve(expected);
+    let mut walk = Walk::new(unit, scaled(tolerance, shift));
+    for stop in stops(unit) {
         while walk.t < stop {
             let chord = walk.advance(stop);
             out.error = out.error.max(scaled(chord.error, -shift));
@@ -104,19 +108,45 @@ fn shift_to_unit<P: Blend>(points: &[P]) -> i32 {
     -exponent.clamp(-1000, 1000)
 }
 
+/// About as many as there will be: six tenths of what second differences ask for (Wang's formula); no more than a few
+/// thousand, since it is a guess.
+fn expected_chords<P: Blend>(points: &[P], tolerance: f64) -> usize {
+    let n = (points.len() - 1) as f64;
+    let bends = points.windows(3).map(|p| (p[2] - p[1] * 2.0 + p[0]).max_abs());
+    let bend = bends.fold(0.0, f64::max);
+    2 + (0.6 * (0.125 * n * (n - 1.0) * bend / tolerance).sqrt()).min(4096.0) as usize
+}
+
 /// Where chords must end: the end of the curve, and before it cusps and turns. Those are rare, and looked for only when
 /// the control polygon turns back; to miss one costs points, not truth.
 fn stops<C: Bernstein>(curve: &C) -> Vec<f64> {
-    let steps: Vec<C::Vector> = curve.points().windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let turns_back = steps.windows(2).any(|pair| pair[0].inner(pair[1]) < 0.0);
-    let mut stops = Vec::new();
-    if turns_back {
-        let longest = steps.iter().fold(0.0, |most: f64, step| most.max(step.norm()));
-        let slow = |&t: &f64| velocity(curve, t).norm() < 0.01 * longest;
-        stops = speed_minima(curve).into_iter().filter(slow).collect();
+    let points = curve.points();
+    let steps = || points.windows(2).map(|pair| pair[1] - pair[0]);
+    let turns_back = steps().zip(steps().skip(1)).any(|(a, b)| a.inner(b) < 0.0);
+    if !turns_back {
+        return vec![1.0];
     }
-    stops.push(1.0);
-    stops
+    let slow_speed = 0.01 * steps().fold(0.0, |most: f64, step| most.max(step.norm()));
+    if let [a, b, c, d] = *points
+        && keeps_speed([b - a, c - b, d - c], slow_speed, 6)
+    {
+        return vec![1.0];
+    }
+    let slow = |&t: &f64| velocity(curve, t).norm() < slow_speed;
+    speed_minima(curve).into_iter().filter(slow).chain([1.0]).collect()
+}
+
+/// Whether a quadratic derivative is shown to stay longer than `slow` by hulls, after so many halvings at most.
+fn keeps_speed<P: Blend>([u, v, w]: [P; 3], slow: f64, halvings: u32) -> bool {
+    let (left, right) = ((u + v) * 0.5, (v + w) * 0.5);
+    let middle = (left + right) * 0.5;
+    let limit = slow * middle.norm();
+    if [u, v, w].iter().all(|step| step.inner(middle) > limit) {
+        return true;
+    }
+    halvings > 0
+        && keeps_speed([u, left, middle], slow, halvings - 1)
+        && keeps_speed([middle, right, w], slow, halvings - 1)
 }
 
 /// The derivative over the degree.
@@ -131,6 +161,8 @@ fn velocity<C: Bernstein>(curve: &C, t: f64) -> C::Vector {
 /// A certified chord.
 struct Chord<P> {
     end: P,
+    /// A third of the derivative at its end; of cubics only.
+    arriving: P,
     error: f64,
 }
 
@@ -138,37 +170,56 @@ struct Chord<P> {
 struct Walk<'a, C: Bernstein> {
     curve: &'a C,
     /// Control points when the degree is at most 3, for which parts are found from ends and derivatives.
-    cubic: Option<Cubic<C::Vector>>,
+    cubic: Option<[C::Vector; 4]>,
     tolerance: f64,
     rounding: f64,
     t: f64,
+    /// The point at `t` and a third of the derivative; of cubics only.
+    start: (C::Vector, C::Vector),
     /// The step that is expected to fill the tolerance.
     step: f64,
+    /// The step that would have filled it for the last chord.
+    filling: f64,
 }
 
 /// A chord that uses this share of the tolerance is long enough.
-const ENOUGH: f64 = 0.85;
+const ENOUGH: f64 = 0.75;
 /// Chords of one start that fit before the longest of them is taken.
 const MOST_FITS: u32 = 5;
 /// The share of the tolerance that a guess aims at.
-const AIM: f64 = 0.95;
+const AIM: f64 = 0.92;
+/// The most by which the next chord is expected to be longer or shorter than this one, as this one was than the last:
+/// with it four chords are tried for three that are taken, else six.
+const TREND: f64 = 1.3;
 
 impl<'a, C: Bernstein> Walk<'a, C> {
     fn new(curve: &'a C, tolerance: f64) -> Walk<'a, C> {
         let points = curve.points();
+        let raised = |low: Option<Cubic<C::Vector>>| low.map(Cubic::to_array);
         let cubic = match *points {
-            [a, b, c, d] => Cubic::new([a, b, c, d]).ok(),
-            [a, b, c] => crate::curve::Quadratic::new([a, b, c]).ok().map(|low| low.elevated()),
-            [a, b] => crate::curve::Line::new([a, b]).ok().map(|low| low.elevated()),
+            [a, b, c, d] => Some([a, b, c, d]),
+            [a, b, c] => raised(crate::curve::Quadratic::new([a, b, c]).ok().map(|low| low.elevated())),
+            [a, b] => raised(crate::curve::Line::new([a, b]).ok().map(|low| low.elevated())),
             _ => None,
         };
-        Walk { curve, cubic, tolerance, rounding: rounding(points), t: 0.0, step: 0.25 }
+        let start = cubic.map_or((points[0], C::Vector::ZERO), |[a, b, _, _]| (a, b - a));
+        Walk { curve, cubic, tolerance, rounding: rounding(points), t: 0.0, start, step: 0.25, filling: 0.25 }
+    }
+
+    /// Moves to the end of a chord of which another width would have filled the tolerance.
+    #[inline]
+    fn take(&mut self, to: f64, chord: Chord<C::Vector>, filling: f64) -> Chord<C::Vector> {
+        self.step = filling * (filling / self.filling).clamp(1.0 / TREND, TREND);
+        self.filling = filling.max(f64::MIN_POSITIVE);
+        self.t = to;
+        self.start = (chord.end, chord.arriving);
+        chord
     }
 
     /// Takes the longest chord towards `stop`, nearly, and moves to its end.
     fn advance(&mut self, stop: f64) -> Chord<C::Vector> {
         let from = self.t;
-        let mut longest: Option<(f64, Chord<C::Vector>)> = None;
+        let mut longest: Option<(f64, Chord<C::Vector>, f64)> = None;
         let (mut too_long, mut step, mut fits) = (f64::INFINITY, self.step, 0);
         loop {
             let to = if from + 1.001 * step >= stop { stop } else { (from + step).max(from.next_up()) };
@@ -178,16 +229,13 @@ impl<'a, C: Bernstein> Walk<'a, C> {
             // Neighbouring parameters: what is left is rounding.
             if fill <= 1.0 || to <= from.next_up() {
                 fits += 1;
-                self.step = guess;
                 if fill >= ENOUGH || to == stop || fits == MOST_FITS {
-                    self.t = to;
-                    return chord;
+                    return self.take(to, chord, guess);
                 }
-                longest = Some((to, chord));
+                longest = Some((to, chord, guess));
                 step = guess.max(1.05 * width).min(0.5 * width + 0.5 * too_long);
-            } else if let Some((to, chord)) = longest {
-                self.t = to;
-                return chord;
+            } else if let Some((to, chord, guess)) = longest {
+                return self.take(to, chord, guess);
             } else {
                 too_long = width;
                 step = guess.clamp(0.1 * width, 0.9 * width);
@@ -199,15 +247,34 @@ impl<'a, C: Bernstein> Walk<'a, C> {
     fn certify(&self, from: f64, to: f64) -> Chord<C::Vector> {
         match &self.cubic {
             Some(cubic) => {
-                let part = cubic.subcurve(from, to).unwrap_or(*cubic);
-                Chord { end: part.end(), error: cubic_bound(&part.to_array()) + self.rounding }
+                // Hermite's form: the inner control points are a third of the derivatives away from the ends. Where
+                // the width is small its rounding is small beside that of the ends.
+                let ((start, leaving), (end, arriving)) = (self.start, ends_of(cubic, to));
+                let width = to - from;
+                let part = [start, start + leaving * width, end - arriving * width, end];
+                Chord { end, arriving, error: cubic_bound(&part) + self.rounding }
             }
             None => match self.curve.subcurve(from, to) {
-                Ok(part) => Chord { end: part.end(), error: general_bound(part.points()) + self.rounding },
-                Err(_) => Chord { end: self.curve.eval(to), error: f64::INFINITY },
+                Ok(part) => {
+                    let error = general_bound(part.points()) + self.rounding;
+                    Chord { end: part.end(), arriving: C::Vector::ZERO, error }
+                }
+                Err(_) => Chord { end: self.curve.eval(to), arriving: C::Vector::ZERO, error: f64::INFINITY },
             },
         }
     }
+}
+
+/// Point and a third of the derivative.
+#[inline]
+fn ends_of<P: Blend>(points: &[P; 4], t: f64) -> (P, P) {
+    let [a, b, c, d] = *points;
+    if t == 1.0 {
+        return (d, d - c);
+    }
+    let (p, q, r) = (a + (b - a) * t, b + (c - b) * t, c + (d - c) * t);
+    let (v, w) = (p + (q - p) * t, q + (r - q) * t);
+    (v + (w - v) * t, w - v)
 }
 
 /// Whether the control polygon never steps back along its chord.
@@ -223,10 +290,14 @@ fn offset<P: Blend>(point: P, start: P, chord: P, share: f64, across: bool) -> P
     from_start - chord * along
 }
 
+#[inline]
 fn cubic_bound<P: Blend>(points: &[P; 4]) -> f64 {
     let [a, b, c, d] = *points;
     let chord = d - a;
     let across = advances(points, chord);
+    if across && P::DIMENSION == 2 {
+        return plane_bound(b - a, c - a, chord);
+    }
     let (v, w) = (offset(b, a, chord, 1.0 / 3.0, across), offset(c, a, chord, 2.0 / 3.0, across));
     // The second offset split into a multiple of the first and a rest across it; in the plane there is none.
     let square = v.inner(v);
@@ -234,6 +305,24 @@ fn cubic_bound<P: Blend>(points: &[P; 4]) -> f64 {
     let rest = w - v * multiple;
     let (main, side) = (square.sqrt() * peak(multiple), 4.0 / 9.0 * rest.norm());
     (main * main + side * side).sqrt()
+}
+
+/// The bound across the chord in the plane, where offsets are cross products.
+#[inline]
+fn plane_bound<P: Blend>(b: P, c: P, chord: P) -> f64 {
+    let height = |p: P| chord.component(0) * p.component(1) - chord.component(1) * p.component(0);
+    let (v, w) = (height(b), height(c));
+    // The peak is on the side of the larger one.
+    let (main, other) = if v.abs() >= w.abs() { (v, w) } else { (w, v) };
+    if main == 0.0 {
+        return 0.0;
+    }
+    let r = other / main;
+    // The derivative of t (1 - t) ((1 - t) + r t) is 1 + 2 (r - 2) t - 3 (r - 1) t^2.
+    let half = 2.0 - r;
+    let t = 1.0 / (half + (half * half - 3.0 * (1.0 - r)).max(0.0).sqrt());
+    let peak = 3.0 * t * (1.0 - t) * ((1.0 - t) + r * t) * (1.0 + 8.0 * f64::EPSILON);
+    main.abs() * peak / chord.inner(chord).sqrt()
 }
 
 /// The largest magnitude over [0, 1] of `3 t (1 - t) ((1 - t) + r t)`.

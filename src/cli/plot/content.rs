@@ -1,7 +1,7 @@
 //! From files to layers.
 
 use super::{Args, Style};
-use crate::cli::input::{Kind, Source};
+use crate::cli::input::{Kind, Source, warn_of_styles};
 use crate::cli::model::{self, Times};
 use crate::cli::stop::Stop;
 use crate::cli::terminal::Terminal;
@@ -85,6 +85,7 @@ fn drawing(source: &Source, terminal: &Terminal) -> Result<Drawn, Stop> {
     for (name, count) in &drawing.ignored {
         terminal.warn(format!("{source}: {count} {name} elements are not paths and are not drawn"));
     }
+    warn_of_styles(source, &drawing, terminal);
     let shapes: Vec<_> = drawing.shapes.into_iter().filter(|shape| !shape.path.subpaths.is_empty()).collect();
     let few = shapes.len() <= COLORED;
     let layer = |(index, shape): (usize, &DrawnShape)| {

@@ -4,7 +4,9 @@
 //! `polygon`, in the order in which they are drawn, under the transforms of everything around them. Arcs stay arcs of
 //! ellipses. `g`, `a`, `switch` (all of it) and nested `svg` are entered, `use` is followed to what it names; what is
 //! only kept for later use (`defs`, `symbol`, `clipPath`, `mask`, `marker`, `pattern`) and what has `display: none` is
-//! not drawn and not read. Text and images are counted and passed over, style sheets and animations are not obeyed.
+//! not drawn and not read. Text and images are counted and passed over. Of styles only `display` in a `style` attribute is
+//! obeyed; other declarations there and in style sheets that would change the geometry are counted, in
+//! [`Drawing::disobeyed`]. Animations are not obeyed.
 //!
 //! Coordinates are user units of the outermost `svg`, with y down, as its view box has them. Lengths with units become
 //! user units at 96 to the inch, percentages refer to the view box; [`Drawing::millimetres`] says how long a unit is.
@@ -22,6 +24,7 @@
 mod data;
 mod scan;
 mod shapes;
+mod styles;
 mod tree;
 mod values;
 mod write;
@@ -45,6 +48,9 @@ pub struct Drawing {
     pub size: [Option<f64>; 2],
     /// Names of elements that hold text or pictures, which are passed over, and how many there are of each.
     pub ignored: Vec<(String, usize)>,
+    /// Properties that styles set and that would change the geometry, such as `transform` and `d`, but are not obeyed,
+    /// and how many declarations of each there are. Those of style sheets count whatever they apply to.
+    pub disobeyed: Vec<(String, usize)>,
 }
 
 /// A shape of a drawing.

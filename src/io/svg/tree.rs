@@ -1,7 +1,7 @@
 //! From the tree of elements to shapes.
 
 use super::scan::Fault;
-use super::{Drawing, MOST_ELEMENTS, MOST_PIECES, Shape, data, problem, shapes, values};
+use super::{Drawing, MOST_ELEMENTS, MOST_PIECES, Shape, data, problem, shapes, styles, values};
 use crate::curve::{CurveError, Path};
 use crate::io::{Place, Problem, ReadError};
 use crate::math::{Affine2, Vec2};
@@ -30,7 +30,23 @@ pub(super) fn read(text: &str) -> Result<Drawing, ReadError> {
     reader.walk(root, view)?;
     let Reader { mut drawing, ignored, .. } = reader;
     drawing.ignored = ignored.into_iter().map(|(name, count)| (name.to_owned(), count)).collect();
+    drawing.disobeyed = disobeyed(&document);
     Ok(drawing)
+}
+
+/// Geometry properties that styles set, by name, and how many declarations of each there are.
+fn disobeyed(document: &Document<'_>) -> Vec<(String, usize)> {
+    let mut counts = BTreeMap::<&str, usize>::new();
+    for node in document.descendants().filter(|node| is_svg(*node)) {
+        let own = styles::declarations(node.attribute("style").unwrap_or_default());
+        let own = own.filter_map(|(name, _)| styles::geometry(name));
+        let sheets =
+            node.children().filter(|_| node.tag_name().name() == "style").filter_map(|child| child.text());
+        for name in own.chain(sheets.flat_map(styles::in_sheet)) {
+            *counts.entry(name).or_default() += 1;
+        }
+    }
+    counts.into_iter().map(|(name, count)| (name.to_owned(), count)).collect()
 }
 
 /// The parser's messages end with their place, which we give in our own way.
@@ -314,12 +330,13 @@ fn push_children<'a, 'input>(node: Node<'a, 'input>, around: Around, tasks: &mut
 }
 
 fn is_hidden(node: Node<'_, '_>) -> bool {
-    let none = |value: &str| value.trim() == "none";
-    let declared = |style: &str| {
-        let declarations = style.split(';').filter_map(|declaration| declaration.split_once(':'));
-        declarations.into_iter().any(|(name, value)| name.trim() == "display" && none(value))
-    };
-    node.attribute("display").is_some_and(none) || node.attribute("style").is_some_and(declared)
+    // The style goes before the attribute, the last declaration before others.
+    let styled = styles::declarations(node.attribute("style").unwrap_or_default());
+    let display =
+        styled.filter(|(name, _)| name.eq_ignore_ascii_case("display")).last().map(|(_, value)| value);
+    display
+        .or(node.attribute("display").map(str::trim))
+        .is_some_and(|value| value.eq_ignore_ascii_case("none"))
 }
 
 fn too_many(node: Node<'_, '_>, what: &'static str, most: usize) -> ReadError {
