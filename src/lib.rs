@@ -38,7 +38,7 @@
 //! | layer | modules |
 //! |---|---|
 //! | ground | [`math`], [`par`], [`numeric`] |
-//! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`], [`sdf`] |
+//! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`], [`sdf`], [`surface`] |
 //! | verbs | [`tessellate`], [`isosurface`], [`boolean`], [`hull`] |
 //! | worlds | [`csg`] recipe to solid, [`io`] values and bytes, [`plot`] curves and data to figures, [`render`] solids to pictures, [`script`] text to recipe |
 //! | shell | `cli`, `main.rs`: paths, clock, environment, terminal; only in the program |
@@ -54,6 +54,7 @@ pub mod mesh;
 pub mod polygon;
 pub mod sdf;
 pub mod spatial;
+pub mod surface;
 
 // verbs
 pub mod boolean;

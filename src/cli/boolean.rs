@@ -90,6 +90,9 @@ fn read(source: &Source) -> Result<Mesh, Stop> {
         Kind::Mesh(format) => source.mesh(format),
         Kind::Script => Err(Stop::about(source, format!("this is a script, build it first; {}", endings()))),
         Kind::Formula => Err(Stop::about(source, "this is a formula; `ogee build` makes a mesh of it")),
+        Kind::Patches => {
+            Err(Stop::about(source, "these are patches; `ogee build --close` makes a solid of them"))
+        }
         Kind::Drawing | Kind::Table | Kind::Points => Err(Stop::about(source, "this is not a mesh")),
     }
 }

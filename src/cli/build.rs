@@ -2,6 +2,7 @@ use super::formula::FormulaArgs;
 use super::input::{Kind, Source};
 use super::model::{self, Times};
 use super::output::{self, Output};
+use super::patches::{self, PatchArgs};
 use super::settings::{ScriptArgs, format};
 use super::stop::Stop;
 use super::summary::{Form, Summary};
@@ -18,14 +19,16 @@ Examples:
   ogee build bracket.scad -o bracket.obj
   ogee build bracket.scad -o bracket.stl -o bracket.ply -D width=40 -D 'label=\"A\"'
   ogee build bracket.scad --summary json
-  ogee build - -o - --format off < bracket.scad > bracket.off
-  ogee build gyroid.vm --box -1,-1,-1,1,1,1 --tolerance 0.01 -o gyroid.stl --summary text";
+  ogee build teapot.bpt --tolerance 1e-3 -o teapot.obj
+  ogee build teapot.bpt --close -o teapot.stl
+  ogee build gyroid.vm --box -1,-1,-1,1,1,1 --tolerance 0.01 -o gyroid.stl --summary text
+  ogee build - -o - --format off < bracket.scad > bracket.off";
 
-/// Make a mesh from a script or a formula
+/// Make a mesh from a script, a formula or a file of Bézier patches
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// The script, or a formula as .vm; `-` reads a script from standard input
+    /// The script, formula (.vm) or file of patches (.bpt); `-` reads a script from standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     input: PathBuf,
     /// Where to write the mesh, in the format of the ending; may be repeated; `-` is standard output
@@ -40,15 +43,22 @@ pub(super) struct Args {
     /// Exit with 4 when a mesh that takes part, or the result, is not closed
     #[arg(long)]
     strict: bool,
+    /// Largest distance between mesh and surface, in model units, for formulas and patches; patches have a thousandth of
+    /// their size by default
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
     #[command(flatten)]
     formula: FormulaArgs,
     #[command(flatten)]
+    patches: PatchArgs,
+    #[command(flatten, next_help_heading = "Scripts")]
     script: ScriptArgs,
 }
 
 /// What is meant by the arguments.
 struct Job {
     source: Source,
+    kind: Kind,
     outputs: Vec<Output>,
     summary: Option<Form>,
     strict: bool,
@@ -57,17 +67,35 @@ struct Job {
 impl Job {
     fn new(args: &Args) -> Result<Job, Stop> {
         let source = Source::typed(&args.input);
-        let hint = match source.kind() {
+        let kind = source.kind();
+        let hint = match kind {
             Ok(Kind::Mesh(_)) => Some("this is a mesh, not a script; see `ogee info` and `ogee boolean`"),
             Ok(Kind::Drawing) => Some("this is a drawing, not a script; see `ogee info` and `ogee plot`"),
             Ok(Kind::Table | Kind::Points) => Some("these are data, not a script; see `ogee plot`"),
-            Ok(Kind::Script | Kind::Formula) | Err(_) => None,
+            Ok(kind) => misplaced(kind, args),
+            Err(_) => None,
         };
         if let Some(hint) = hint {
             return Err(Stop::about(source, hint));
         }
         let outputs = output::plan_beside(args.summary, &args.output, args.format)?;
-        Ok(Job { source, outputs, summary: args.summary, strict: args.strict })
+        // A file that is not there is explained where it is read.
+        let kind = kind.unwrap_or(Kind::Script);
+        Ok(Job { source, kind, outputs, summary: args.summary, strict: args.strict })
+    }
+}
+
+/// What to say of options that an input of this kind has no use for.
+fn misplaced(kind: Kind, args: &Args) -> Option<&'static str> {
+    match kind {
+        Kind::Script if args.tolerance.is_some() => {
+            Some("--tolerance is for formulas and files of patches; a script has $fe")
+        }
+        Kind::Script | Kind::Patches if args.formula.is_given() => Some("--box is for formulas (.vm)"),
+        Kind::Script | Kind::Formula if args.patches.is_given() => {
+            Some("--angle, --measured, --close and --thickness are for files of patches (.bpt)")
+        }
+        _ => None,
     }
 }
 
@@ -76,13 +104,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let mut times = Times::default();
     let mut summary = Summary::default();
     summary.row("input", job.source.to_string());
-    if matches!(job.source.kind(), Ok(Kind::Formula)) {
-        let solid = args.formula.build(&job.source, &mut times, &mut summary, terminal)?;
-        write_solid(&job, &solid, &mut times, &mut summary, terminal)?;
-        summary.row("seconds", times.rows());
-        return job.summary.map_or(Ok(()), |form| print(&summary.print(form)));
+    match job.kind {
+        Kind::Patches => return build_patches(&job, args, times, summary, terminal),
+        Kind::Formula => return build_formula(&job, args, times, summary, terminal),
+        _ => {}
     }
-    args.formula.refuse_for_scripts()?;
     let built = model::build(&job.source, &args.script, job.strict, &mut times, terminal)?;
     match built.shape {
         Shape::Solid(solid) => write_solid(&job, &solid, &mut times, &mut summary, terminal)?,
@@ -95,6 +121,48 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
     let [warnings, echoes] = terminal.counts();
     summary.row("warnings", warnings).row("echoes", echoes);
     summary.report(&built.report).row("seconds", times.rows());
+    match job.summary {
+        Some(form) => print(&summary.print(form)),
+        None => Ok(()),
+    }
+}
+
+/// The surface of a formula made a solid.
+fn build_formula(
+    job: &Job,
+    args: &Args,
+    mut times: Times,
+    mut summary: Summary,
+    terminal: &Terminal,
+) -> Result<(), Stop> {
+    let solid = args.formula.build(&job.source, args.tolerance, &mut times, &mut summary, terminal)?;
+    write_solid(job, &solid, &mut times, &mut summary, terminal)?;
+    summary.row("seconds", times.rows());
+    job.summary.map_or(Ok(()), |form| print(&summary.print(form)))
+}
+
+/// The patches of a file made a mesh, which is open unless it was asked to be closed.
+fn build_patches(
+    job: &Job,
+    args: &Args,
+    mut times: Times,
+    mut summary: Summary,
+    terminal: &Terminal,
+) -> Result<(), Stop> {
+    let read = times.stage(terminal, "read", "reading", || patches::read(&job.source))?;
+    let made = times.stage(terminal, "build", "tessellating", || {
+        args.patches.make(&job.source, read, args.tolerance, &args.script.build_options())
+    })?;
+    let measures = times.stage(terminal, "measure", "measuring", || Measures::of(made.mesh()));
+    if job.strict && !measures.closed {
+        return Err(Stop::NotClosed(format!("{}: the result is not closed", job.source)));
+    }
+    times.stage(terminal, "write", "writing", || made.write(&job.outputs))?;
+    for name in job.outputs.iter().filter_map(Output::name) {
+        terminal.note(format_args!("{name}: {}", in_short(&measures, &times)));
+    }
+    made.describe(&mut summary);
+    summary.row("seconds", times.rows());
     match job.summary {
         Some(form) => print(&summary.print(form)),
         None => Ok(()),

@@ -19,31 +19,24 @@ pub(super) struct FormulaArgs {
     /// Where to look for the surface, and where to cut it off; found from the formula when not given
     #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = corners, allow_hyphen_values = true)]
     bounds: Option<Aabb>,
-    /// Greatest distance between mesh and surface, in the model's units
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
-    tolerance: Option<f64>,
 }
 
 impl FormulaArgs {
-    /// Refuses options that only formulas have.
-    pub(super) fn refuse_for_scripts(&self) -> Result<(), Stop> {
-        let name = match (self.bounds, self.tolerance) {
-            (Some(_), _) => "--box",
-            (_, Some(_)) => "--tolerance",
-            (None, None) => return Ok(()),
-        };
-        Err(Stop::Usage(format!("{name} is for formulas (.vm), not for scripts")))
+    /// Whether anything was asked for that only formulas have.
+    pub(super) fn is_given(&self) -> bool {
+        self.bounds.is_some()
     }
 
     /// Reads the formula and meshes it.
     pub(super) fn build(
         &self,
         source: &Source,
+        tolerance: Option<f64>,
         times: &mut Times,
         summary: &mut Summary,
         terminal: &Terminal,
     ) -> Result<Solid, Stop> {
-        let Some(tolerance) = self.tolerance else {
+        let Some(tolerance) = tolerance else {
             return Err(Stop::Usage(
                 "a formula needs --tolerance, the greatest error of the mesh".to_owned(),
             ));

@@ -4,6 +4,7 @@ use super::terminal::Terminal;
 use crate::io::{self as formats, Format};
 use crate::mesh::Mesh;
 use crate::script::{Host, Loaded, Message};
+use crate::surface::Patch;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -115,6 +116,11 @@ impl Host for FileHost<'_> {
         let mesh = Arc::new(mesh);
         self.meshes.insert(path, Arc::clone(&mesh));
         Ok(mesh)
+    }
+
+    fn patches(&mut self, name: &str, from: &str) -> Result<Vec<Patch>, String> {
+        let path = self.find(name, from)?;
+        formats::bpt::read(&read_file(&path)?).map_err(|error| error.to_string())
     }
 
     fn say(&mut self, message: Message) {

@@ -18,13 +18,14 @@ Examples:
   ogee info --json bracket.obj
   ogee info bracket.scad
   ogee info --json drawing.svg
+  ogee info --json teapot.bpt
   ogee info - --format stl < bracket.stl";
 
-/// Print the measures of a mesh and what is wrong with it, or those of the paths of a drawing
+/// Print the measures of a mesh and what is wrong with it, or those of patches or of the paths of a drawing
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// A mesh, an SVG drawing, or a script, which is built first; `-` is standard input
+    /// A mesh, a file of patches, an SVG drawing, or a script, which is built first; `-` is standard input
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     input: PathBuf,
     /// Read this format, whatever the ending
@@ -51,6 +52,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
         Kind::Formula => {
             return Err(Stop::about(source, "this is a formula; see `ogee build` and `ogee eval`"));
         }
+        Kind::Patches => super::patches::describe(&source, &super::patches::read(&source)?, &mut summary)?,
         Kind::Script => {
             match model::build(&source, &args.script, false, &mut Times::default(), terminal)?.shape {
                 Shape::Solid(solid) => describe(solid.mesh(), &mut summary),

@@ -35,15 +35,18 @@ pub(super) enum Kind {
     Points,
     /// A formula, one operation a line.
     Formula,
+    /// Bézier patches.
+    Patches,
 }
 
 /// Endings of files that hold neither scripts nor meshes.
-const OTHERS: [(&str, Kind); 5] = [
+const OTHERS: [(&str, Kind); 6] = [
     ("svg", Kind::Drawing),
     ("csv", Kind::Table),
     ("tsv", Kind::Table),
     ("json", Kind::Points),
     ("vm", Kind::Formula),
+    ("bpt", Kind::Patches),
 ];
 
 impl Source {
@@ -113,7 +116,7 @@ pub(super) fn warn_of_styles(source: &Source, drawing: &Drawing, terminal: &Term
 
 /// The endings that are understood, as a sentence.
 pub(super) fn endings() -> String {
-    format!("scripts end in .scad, meshes in {}, drawings in .svg", mesh_endings())
+    format!("scripts end in .scad, meshes in {}, drawings in .svg, patches in .bpt", mesh_endings())
 }
 
 /// The endings of mesh files, as a list.
@@ -180,7 +183,7 @@ mod tests {
         assert_eq!(kind("a.SCAD").unwrap(), Kind::Script);
         assert_eq!(kind("-").unwrap(), Kind::Script);
         assert_eq!(kind("dir.scad/a.Stl").unwrap(), Kind::Mesh(Format::StlBinary));
-        let unknown = "Cargo.toml: unknown ending; scripts end in .scad, meshes in .obj, .stl, .off, .ply, drawings in .svg";
+        let unknown = "Cargo.toml: unknown ending; scripts end in .scad, meshes in .obj, .stl, .off, .ply, drawings in .svg, patches in .bpt";
         assert_eq!(kind("Cargo.toml").unwrap_err().text(), Some(unknown));
         assert_eq!(kind("src").unwrap_err().text(), Some("src: this is a folder, not a file"));
         assert_eq!(kind("a.step").unwrap_err().text(), Some("a.step: there is no such file"));

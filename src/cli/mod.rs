@@ -15,6 +15,7 @@ mod info;
 mod input;
 mod model;
 mod output;
+mod patches;
 mod plot;
 mod render;
 mod settings;

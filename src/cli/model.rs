@@ -88,6 +88,8 @@ fn explain(source: &Source, error: &BuildError, strict: bool) -> Stop {
         BuildError::NotClosed { .. }
         | BuildError::NonFinite { .. }
         | BuildError::Sweep(_)
-        | BuildError::Hull(_) => Stop::Error(text),
+        | BuildError::Hull(_)
+        | BuildError::Surface(_)
+        | BuildError::Curves(_) => Stop::Error(text),
     }
 }

@@ -4,7 +4,8 @@
 use super::input;
 use super::stop::Stop;
 use super::summary::Form;
-use crate::io::{Format, WriteError, write_mesh};
+use crate::io::{Format, WriteError, obj, write_mesh};
+use crate::math::Vec3;
 use crate::mesh::Mesh;
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
@@ -62,10 +63,19 @@ pub(super) fn plan(typed: &[PathBuf], format: Option<Format>) -> Result<Vec<Outp
 /// Writes the mesh to all outputs, the files first: either all of them are replaced or none, but for a failure
 /// in the renaming itself, which names the file.
 pub(super) fn write(outputs: &[Output], mesh: &Mesh) -> Result<(), Stop> {
+    write_with(outputs, mesh, None)
+}
+
+/// [`write`] with a normal for every corner, for the formats that have them.
+pub(super) fn write_with(outputs: &[Output], mesh: &Mesh, normals: Option<&[[Vec3; 3]]>) -> Result<(), Stop> {
+    let fill = |format: Format, out: &mut dyn Write| match (format, normals) {
+        (Format::Obj, Some(normals)) => obj::write_with_normals(mesh, normals, out),
+        (format, _) => write_mesh(format, mesh, out),
+    };
     let mut pending = Vec::new();
     for Output { name, place, format } in outputs {
         if let Place::File(path) = place {
-            let written = Pending::write(path, |out| write_mesh(*format, mesh, out));
+            let written = Pending::write(path, |out| fill(*format, out));
             pending.push(written.map_err(|error| Stop::about(name, error))?);
         }
     }
@@ -73,7 +83,7 @@ pub(super) fn write(outputs: &[Output], mesh: &Mesh) -> Result<(), Stop> {
         file.put()?;
     }
     let streams = outputs.iter().filter(|output| !matches!(output.place, Place::File(_)));
-    streams.into_iter().try_for_each(|output| output.place.write(|out| write_mesh(output.format, mesh, out)))
+    streams.into_iter().try_for_each(|output| output.place.write(|out| fill(output.format, out)))
 }
 
 impl Output {

@@ -98,6 +98,13 @@ fn load(
 ) -> Result<(Mesh, Vec<Option<Color>>), Stop> {
     match args.format.map_or_else(|| source.kind(), |format| Ok(Kind::Mesh(format)))? {
         Kind::Mesh(format) => Ok((source.mesh(format)?, Vec::new())),
+        Kind::Patches => {
+            let read = times.stage(terminal, "read", "reading", || super::patches::read(source))?;
+            let mesh = times.stage(terminal, "build", "tessellating", || {
+                super::patches::shown(source, &read, &args.script.build_options())
+            })?;
+            Ok((mesh, Vec::new()))
+        }
         Kind::Drawing | Kind::Table | Kind::Points => {
             Err(Stop::about(source, "this is flat; `ogee plot` draws it"))
         }

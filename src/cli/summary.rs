@@ -40,6 +40,11 @@ impl Summary {
         self.row("centroid", m.centroid.map(|p| p.to_array().to_vec()))
     }
 
+    /// Adds a box.
+    pub(super) fn bounds(&mut self, bounds: Aabb) -> &mut Summary {
+        self.row("box", self::bounds(bounds))
+    }
+
     /// Adds the measures of a plane region.
     pub(super) fn region(&mut self, region: &Region) -> &mut Summary {
         let points = || region.contours().iter().flatten();

@@ -167,6 +167,10 @@ fn hash_body(hash: &mut ContentHasher, body: &Body) {
             hash.numbers(mesh.positions.iter().flat_map(Vec3::to_array));
             hash.integers(mesh.triangles.iter().flatten().map(|&v| u64::from(v)));
         }
+        Body::Surface(surface) => {
+            hash.integers([14]);
+            surface.hash(hash);
+        }
     }
 }
 

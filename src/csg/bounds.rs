@@ -72,6 +72,7 @@ fn body_bounds(body: &Body) -> Aabb {
             proper(Aabb { min: Vec3::new(-radius, -radius, *low), max: Vec3::new(radius, radius, *high) })
         }
         Body::Mesh(mesh) => mesh.bounds(),
+        Body::Surface(surface) => surface.bounds(),
     }
 }
 

@@ -8,7 +8,8 @@ use crate::math::Affine3;
 use crate::mesh::{Defects, Solid, TooLarge};
 use crate::numeric::Unfit;
 use crate::polygon::{Region, RegionError};
-use crate::tessellate::SweepError;
+use crate::surface::SurfaceError;
+use crate::tessellate::{CloseError, SweepError};
 use std::fmt;
 
 /// Red, green, blue and opacity, each from 0 to 1.
@@ -136,6 +137,10 @@ pub enum BuildError {
     Sweep(SweepError),
     /// Points of a hull are too far apart in size.
     Hull(Unfit),
+    /// A surface could not be tessellated or closed.
+    Surface(CloseError),
+    /// What a surface is made of does not make one.
+    Curves(SurfaceError),
 }
 
 impl fmt::Display for BuildError {
@@ -153,6 +158,8 @@ impl fmt::Display for BuildError {
             }
             BuildError::Sweep(error) => error.fmt(f),
             BuildError::Hull(error) => write!(f, "hull: {error}"),
+            BuildError::Surface(error) => error.fmt(f),
+            BuildError::Curves(error) => error.fmt(f),
         }
     }
 }
@@ -282,6 +289,7 @@ fn check_numbers(recipe: &Csg) -> Result<(), BuildError> {
             ("cylinder", heights.iter().chain(radii).all(|number| number.is_finite()))
         }
         Csg::Body(Body::Mesh(mesh)) => ("polyhedron", mesh.positions.iter().all(|point| point.is_finite())),
+        Csg::Body(Body::Surface(surface)) => ("surface", surface.is_sound()),
     };
     if is_sound { Ok(()) } else { Err(BuildError::NonFinite { what }) }
 }

@@ -62,6 +62,11 @@ impl Solver<'_, '_> {
                 Leaf::of(mesh::frustum(*heights, *radii, *fragments)?)
             }
             Body::Mesh(mesh) => Leaf { geometry: Geometry::Mesh(mesh.clone()), clean: false },
+            Body::Surface(surface) => {
+                let mesh = surface.mesh(self.max_triangles())?;
+                self.check_limit(mesh.triangles.len() as u64)?;
+                Leaf { geometry: Geometry::Mesh(Arc::new(mesh)), clean: false }
+            }
         })
     }
 

@@ -12,12 +12,14 @@ mod leaf;
 mod plan;
 mod print;
 mod solve;
+mod surface;
 
 pub use bounds::bounds;
 pub use build::{
     BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, build, build_with_progress,
 };
 pub use print::print;
+pub use surface::{Explicit, SurfaceBody};
 
 use crate::boolean::Op;
 use crate::math::{Affine3, Vec2, Vec3};
@@ -129,6 +131,8 @@ pub enum Body {
     },
     /// Triangles from a polyhedron or a file, closed as a chain.
     Mesh(Arc<Mesh>),
+    /// A surface with its boundary closed, or a thickness.
+    Surface(Arc<SurfaceBody>),
 }
 
 /// Whether a recipe describes a region of the plane or a solid.

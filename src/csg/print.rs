@@ -1,7 +1,9 @@
-use super::{Body, Csg, Flat, LinearSweep, RotateSweep};
+use super::{Body, Csg, Explicit, Flat, LinearSweep, RotateSweep, SurfaceBody};
 use crate::boolean::Op;
+use crate::curve::Spline;
 use crate::math::{Affine3, Vec2, Vec3, degrees};
 use crate::mesh::Mesh;
+use crate::surface::Patch;
 use std::fmt::Write;
 
 /// The recipe as a script of plain calls, one a line, children indented: no variables, no loops, all numbers in full.
@@ -95,12 +97,54 @@ fn body_call(body: &Body) -> String {
             }
         }
         Body::Mesh(mesh) => mesh_call(mesh),
+        Body::Surface(surface) => surface_call(surface),
     }
 }
 
 /// The mesh of a box; without triangles for one that holds nothing.
 fn cuboid_corners(min: Vec3, max: Vec3) -> Mesh {
     crate::mesh::cuboid(min, max).into_mesh()
+}
+
+/// Curves are written as the control points of their cubics.
+fn surface_call(body: &SurfaceBody) -> String {
+    let space = |spline: &Spline<Vec3>| {
+        let last = spline.is_closed().then(|| spline.points()[0]);
+        list(spline.points().iter().copied().chain(last).map(vec3))
+    };
+    let plane = |spline: &Spline<Vec2>| {
+        let last = spline.is_closed().then(|| spline.points()[0]);
+        list(spline.points().iter().copied().chain(last).map(vec2))
+    };
+    let shape = match &body.shape {
+        Explicit::Patches(patches) => {
+            let rows = |patch: &Patch| {
+                let rows = patch.points().chunks(patch.degrees()[1] + 1);
+                list(rows.map(|row| list(row.iter().map(|&p| vec3(p)))))
+            };
+            format!("bezier_surface(patches = {}", list(patches.iter().map(rows)))
+        }
+        Explicit::Revolution { profile, start, angle } => format!(
+            "revolve({}, angle = {}, start = {}, kind = \"bezier\", degree = 3",
+            plane(profile),
+            number(degrees(*angle)),
+            number(degrees(*start))
+        ),
+        Explicit::Sweep(sweep) => format!(
+            "sweep({}, {}, twist = {}, scale = {}, kind = \"bezier\", profile_kind = \"bezier\", degree = 3",
+            space(sweep.path()),
+            plane(sweep.profile()),
+            number(degrees(sweep.twist())),
+            number(sweep.scale())
+        ),
+        Explicit::Tube(tube) => format!(
+            "tube({}, r = {}, kind = \"bezier\", degree = 3",
+            space(tube.path()),
+            number(tube.radius())
+        ),
+    };
+    let thickness = body.thickness.map_or_else(String::new, |t| format!(", thickness = {}", number(t)));
+    format!("{shape}{thickness}, tolerance = {})", number(body.tolerance))
 }
 
 /// Faces run clockwise seen from outside, as the language has them.

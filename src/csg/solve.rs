@@ -109,6 +109,11 @@ impl<'a, 'b> Solver<'a, 'b> {
         if triangles > most { Err(BuildError::Limit { triangles, most }) } else { Ok(()) }
     }
 
+    /// Most triangles of a leaf.
+    pub(super) fn max_triangles(&self) -> u64 {
+        self.options.max_triangles
+    }
+
     pub(super) fn step(&mut self) {
         let done = self.steps.done + 1;
         self.steps = Progress { done, total: self.steps.total.max(done) };

@@ -73,7 +73,7 @@ fn collapse<P: Blend>(row: &mut [P], t: f64) -> P {
 
 /// The point at `t` between `a` and `b`, computed from the nearer end: exact at 0 and at 1 and where `a` equals `b`.
 #[inline]
-pub(super) fn lerp<P: Blend>(a: P, b: P, t: f64) -> P {
+pub(crate) fn lerp<P: Blend>(a: P, b: P, t: f64) -> P {
     if t <= 0.5 { a + (b - a) * t } else { b - (b - a) * (1.0 - t) }
 }
 

@@ -10,11 +10,12 @@
 //!
 //! | SVG | paths and basic shapes; see [`svg`] | path data, same bits |
 //!
-//! Tables of numbers are read from [`csv`] and lists of points from JSON; pictures are written as PNG; formulas
+//! Bézier patches are read and written in the classic text format ([`bpt`]). Tables of numbers are read from [`csv`] and lists of points from JSON; pictures are written as PNG; formulas
 //! ([`crate::sdf::Expr`]) are read and written in the text format of fidget and libfive ([`vm`]).
 //!
 //! Polygons become triangles in their own plane, also where they are not convex.
 
+pub mod bpt;
 pub mod csv;
 mod error;
 mod facets;

@@ -8,6 +8,8 @@ use super::text::{Shortest, Words, parse};
 use super::{Place, Problem, ReadError, WriteError};
 use crate::math::Vec3;
 use crate::mesh::Mesh;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::io::{BufWriter, Write};
 
 /// Reads positions (`v`) and faces (`f`); every other kind of line is passed over. Vertices keep their order, all
@@ -53,6 +55,39 @@ fn face(words: &mut Words<'_>, vertices: usize, facets: &mut Facets) -> Result<(
         );
     }
     facets.end_face(at)
+}
+
+/// [`write()`] with a unit normal for every corner; equal ones are written once.
+///
+/// # Errors
+/// As [`write()`].
+///
+/// # Panics
+/// When there are not as many normals as triangles.
+pub fn write_with_normals(mesh: &Mesh, normals: &[[Vec3; 3]], out: &mut dyn Write) -> Result<(), WriteError> {
+    assert_eq!(normals.len(), mesh.triangles.len(), "three normals a triangle");
+    WriteError::check_indices(mesh)?;
+    let mut out = BufWriter::with_capacity(1 << 16, out);
+    for p in &mesh.positions {
+        writeln!(out, "v {} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
+    }
+    let mut known: BTreeMap<[u64; 3], u64> = BTreeMap::new();
+    for normal in normals.iter().flatten() {
+        // Zero has two bit patterns that mean the same.
+        let key = normal.to_array().map(|x| (x + 0.0).to_bits());
+        let next = known.len() as u64 + 1;
+        if let Entry::Vacant(entry) = known.entry(key) {
+            entry.insert(next);
+            let [x, y, z] = key.map(f64::from_bits);
+            writeln!(out, "vn {} {} {}", Shortest(x), Shortest(y), Shortest(z))?;
+        }
+    }
+    for (triangle, normals) in mesh.triangles.iter().zip(normals) {
+        let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
+        let [p, q, r] = normals.map(|normal| known[&normal.to_array().map(|x| (x + 0.0).to_bits())]);
+        writeln!(out, "f {a}//{p} {b}//{q} {c}//{r}")?;
+    }
+    Ok(out.flush()?)
 }
 
 /// Writes positions and triangles. Coordinates are printed with the fewest digits that read back to the same bits.

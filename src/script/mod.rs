@@ -74,6 +74,7 @@ pub use diagnostic::{FileId, Frame, Label, Message, Severity, Span};
 
 use crate::csg::Csg;
 use crate::mesh::Mesh;
+use crate::surface::Patch;
 use std::sync::Arc;
 
 /// What a script asks of the world around it.
@@ -90,6 +91,15 @@ pub trait Host {
     /// # Errors
     /// A sentence for the user: not found, not a mesh, not allowed.
     fn mesh(&mut self, name: &str, from: &str) -> Result<Arc<Mesh>, String>;
+
+    /// The Bézier patches in the file `name` as written in a `bezier_surface` of the file `from`; by default there are
+    /// none.
+    ///
+    /// # Errors
+    /// As [`Host::mesh`].
+    fn patches(&mut self, _name: &str, _from: &str) -> Result<Vec<Patch>, String> {
+        Err("files of patches cannot be read here".to_owned())
+    }
 
     /// Takes what the script says, in order: echoes, warnings, errors.
     fn say(&mut self, message: Message);

@@ -1,13 +1,18 @@
-//! Smooth to flat: curves flattened, polygons extruded and revolved.
+//! Smooth to flat: curves flattened, surfaces tessellated, polygons extruded and revolved.
 
 mod extrude;
 mod flatten;
 mod profile;
 mod revolve;
+mod surface;
 
 pub use extrude::{LinearSweep, linear_extrude};
 pub use flatten::{Flattened, flatten, flatten_spline};
 pub use revolve::{RotateSweep, rotate_extrude};
+pub use surface::{
+    Achieved, CloseError, EdgeCounts, Guarantee, Precision, SurfaceOptions, Tessellation, TessellationError,
+    View, capped, patch_edges, patches, surface, surfaces, thickened,
+};
 
 use crate::mesh::TooLarge;
 use crate::polygon::triangulate::TriangulationError;

@@ -55,6 +55,7 @@ impl Drawn {
                 return Err(Stop::about(source, "this is a formula; `ogee build` makes a mesh of it"));
             }
             Kind::Mesh(_) => return Err(Stop::about(source, "this is a mesh; `ogee render` draws it")),
+            Kind::Patches => return Err(Stop::about(source, "these are patches; `ogee render` draws them")),
         };
         if drawn.layers.is_empty() {
             return Err(Stop::about(source, "there is nothing to draw in it"));

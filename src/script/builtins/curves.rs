@@ -1,7 +1,7 @@
 //! Curves as functions: they take points and give points.
 
 use super::{Builtin, named_row};
-use crate::curve::{AnyBezier, ArcLength, Bernstein, Boundary, CurveError, Line, Spacing, Spline};
+use crate::curve::{AnyBezier, ArcLength, Bernstein, Boundary, Cubic, CurveError, Line, Spacing, Spline};
 use crate::math::{Blend, Vec2, Vec3, atan2};
 use crate::script::budget::{Budget, Fault, Outcome, undefined};
 use crate::script::eval::{Fragmentation, Session};
@@ -257,6 +257,45 @@ fn pieces<P: Blend>(
         }
     };
     Ok(spline.map_err(explained)?.pieces().map(AnyBezier::from).collect())
+}
+
+/// The spline of a kind through or near the points of a list, for solids that are made of curves.
+pub(super) fn spline_of<P: Blend>(
+    value: &Value,
+    kind: &Value,
+    degree: &Value,
+    closed: bool,
+    budget: &mut Budget,
+) -> Result<Spline<P>, Fault> {
+    let kind = Kind::of(kind, degree)?;
+    let points = match Points::of(value, budget)? {
+        Points::Flat(points) => components_of(&points),
+        Points::Space(points) => components_of(&points),
+    };
+    let points: Vec<P> = points
+        .ok_or_else(|| Fault::Undefined(format!("the points must have {} coordinates", P::DIMENSION)))?;
+    let explained = |error: CurveError| Fault::Undefined(error.to_string());
+    let points = if kind == Kind::Line { apart(&points, closed) } else { points };
+    let mut cubics = Vec::new();
+    for piece in pieces(&points, &kind, closed, budget)? {
+        if piece.degree() > 3 {
+            return undefined(
+                "a solid is made of curves of degree 3 at most; degree = 3 makes a chain of cubics",
+            );
+        }
+        let raised = piece.elevated(3 - piece.degree());
+        let four = [0, 1, 2, 3].map(|k: usize| raised.points()[k]);
+        cubics.push(Cubic::new(four).map_err(explained)?);
+    }
+    let spline = Spline::from_pieces(&cubics).map_err(explained)?;
+    let meets = cubics.len() > 1 && cubics[0].start() == cubics[cubics.len() - 1].end();
+    if meets { spline.into_closed().map_err(explained) } else { Ok(spline) }
+}
+
+/// The points in another space of as many dimensions.
+fn components_of<Q: Blend, P: Blend>(points: &[Q]) -> Option<Vec<P>> {
+    let same = Q::DIMENSION == P::DIMENSION;
+    same.then(|| points.iter().map(|point| P::from_components(|axis| point.component(axis))).collect())
 }
 
 fn lines<P: Blend>(points: &[P], closed: bool) -> Result<Vec<AnyBezier<P>>, CurveError> {

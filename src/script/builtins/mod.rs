@@ -11,6 +11,7 @@ mod polyhedron;
 mod primitive;
 mod random;
 mod search;
+mod surfaces;
 mod text;
 
 pub(super) use random::Random;
@@ -110,6 +111,7 @@ const TABLES: &[&[Builtin]] = &[
     text::TABLE,
     random::TABLE,
     search::TABLE,
+    surfaces::TABLE,
     VARIABLES,
     MISSING,
 ];

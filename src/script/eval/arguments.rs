@@ -128,6 +128,21 @@ impl<'p> Machine<'p> {
         self.specials.fragmentation()
     }
 
+    /// What evaluation may still spend.
+    pub(in crate::script) fn budget(&mut self) -> &mut crate::script::budget::Budget {
+        &mut self.session.budget
+    }
+
+    /// The Bézier patches in a file, by the host.
+    pub(in crate::script) fn host_patches(
+        &mut self,
+        name: &str,
+        span: Span,
+    ) -> Result<Vec<crate::surface::Patch>, String> {
+        let from = self.files[span.file.0 as usize].name.clone();
+        self.host.patches(name, &from)
+    }
+
     /// The mesh in a file, by the host.
     pub(in crate::script) fn host_mesh(
         &mut self,

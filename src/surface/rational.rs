@@ -1,0 +1,186 @@
+use super::net::{self, Degrees};
+use super::patch::check_degrees;
+use super::{Jet, Patch, Side, Surface, SurfaceError};
+use crate::curve::Rational;
+use crate::math::{Aabb, Vec3, Vec4};
+
+/// A rational tensor-product Bézier patch over the unit square: quadrics are exact. Kept homogeneous, (w x, w y, w z, w).
+#[derive(Clone, Debug, PartialEq)]
+pub struct RationalPatch {
+    points: Vec<Vec4>,
+    degrees: Degrees,
+}
+
+impl RationalPatch {
+    /// The patch with these degrees, points (in the order of [`Patch::new`]) and positive weights.
+    ///
+    /// # Errors
+    /// As [`Patch::new`], and [`SurfaceError::Weight`].
+    pub fn new(degrees: [usize; 2], points: &[Vec3], weights: &[f64]) -> Result<RationalPatch, SurfaceError> {
+        check_degrees(degrees)?;
+        let expected = (degrees[0] + 1) * (degrees[1] + 1);
+        if let Some(&actual) = [points.len(), weights.len()].iter().find(|&&count| count != expected) {
+            return Err(SurfaceError::Count { actual, expected });
+        }
+        if let Some(index) = weights.iter().position(|w| !(w.is_normal() && *w > 0.0)) {
+            return Err(SurfaceError::Weight { index });
+        }
+        let homogeneous: Vec<Vec4> = points.iter().zip(weights).map(|(&p, &w)| (p * w).extend(w)).collect();
+        match homogeneous.iter().position(|point| !point.is_finite()) {
+            Some(index) => Err(SurfaceError::NotFinite { index }),
+            None => Ok(RationalPatch { points: homogeneous, degrees }),
+        }
+    }
+
+    /// From homogeneous points that are known to be sound.
+    pub(super) fn assume(degrees: Degrees, points: Vec<Vec4>) -> RationalPatch {
+        debug_assert!(points.iter().all(|p| p.is_finite() && p.w > 0.0));
+        RationalPatch { points, degrees }
+    }
+
+    /// The homogeneous control points.
+    pub fn homogeneous(&self) -> &[Vec4] {
+        &self.points
+    }
+
+    /// Degrees in u and in v.
+    pub fn degrees(&self) -> [usize; 2] {
+        self.degrees
+    }
+
+    /// The point at parameters.
+    pub fn eval(&self, u: f64, v: f64) -> Vec3 {
+        projected(net::eval(&self.points, self.degrees, u, v))
+    }
+
+    /// The part over ranges of u and v, over the unit square.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Parameter`] when a range is not ascending within [0, 1].
+    pub fn part(&self, ranges: [[f64; 2]; 2]) -> Result<RationalPatch, SurfaceError> {
+        let mut part = self.clone();
+        for (axis, range) in ranges.into_iter().enumerate() {
+            let [low, high] = range;
+            if !(0.0 <= low && low < high && high <= 1.0) {
+                return Err(SurfaceError::Parameter { value: if low >= 0.0 { high } else { low } });
+            }
+            net::restrict(&mut part.points, self.degrees, axis, range);
+        }
+        Ok(part)
+    }
+
+    /// The same patch written with degrees higher by these numbers.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Degree`] above 200.
+    pub fn elevated(&self, by: [usize; 2]) -> Result<RationalPatch, SurfaceError> {
+        check_degrees([self.degrees[0].saturating_add(by[0]), self.degrees[1].saturating_add(by[1])])?;
+        let (mut points, mut degrees) = (self.points.clone(), self.degrees);
+        for axis in std::iter::repeat_n(0, by[0]).chain(std::iter::repeat_n(1, by[1])) {
+            (points, degrees) = net::elevated(&points, degrees, axis);
+        }
+        Ok(RationalPatch { points, degrees })
+    }
+
+    /// A border curve, exactly.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Curve`] when a coordinate over its weight exceeds the range of `f64`.
+    pub fn border(&self, side: Side) -> Result<Rational, SurfaceError> {
+        let line = net::border(&self.points, self.degrees, side as usize);
+        let points: Vec<Vec3> = line.iter().copied().map(projected).collect();
+        let weights: Vec<f64> = line.iter().map(|point| point.w).collect();
+        Ok(Rational::new(&points, &weights)?)
+    }
+
+    /// The box of the control points, which holds the patch.
+    pub fn hull_box(&self) -> Aabb {
+        Aabb::of(self.points.iter().copied().map(projected))
+    }
+}
+
+/// The point of space that a homogeneous one stands for.
+pub(super) fn projected(point: Vec4) -> Vec3 {
+    Vec3::new(point.x / point.w, point.y / point.w, point.z / point.w)
+}
+
+impl From<Patch> for RationalPatch {
+    fn from(patch: Patch) -> RationalPatch {
+        let points = patch.points().iter().map(|point| point.extend(1.0)).collect();
+        RationalPatch { points, degrees: patch.degrees() }
+    }
+}
+
+impl Surface for RationalPatch {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[0.0, 1.0]; 2]
+    }
+
+    fn point(&self, u: f64, v: f64) -> Vec3 {
+        self.eval(u, v)
+    }
+
+    /// By the quotient rule.
+    fn jet(&self, u: f64, v: f64) -> Jet {
+        let [s, su, sv, suu, suv, svv] = net::jet(&self.points, self.degrees, u, v);
+        let point = projected(s);
+        let du = (su.truncate() - su.w * point) / s.w;
+        let dv = (sv.truncate() - sv.w * point) / s.w;
+        let second = |d: Vec4, first: Vec3, weight: f64, other: Vec3, other_weight: f64| {
+            (d.truncate() - weight * other - other_weight * first - d.w * point) / s.w
+        };
+        Jet {
+            point,
+            du,
+            dv,
+            duu: second(suu, du, su.w, du, su.w),
+            duv: second(suv, du, su.w, dv, sv.w),
+            dvv: second(svv, dv, sv.w, dv, sv.w),
+        }
+    }
+
+    fn border_net(&self, side: Side) -> Option<Vec<Vec4>> {
+        Some(net::border(&self.points, self.degrees, side as usize))
+    }
+
+    /// With B the net moved so that the middle of the part is the origin, |B / w| is at most r, the largest distance of a
+    /// control point; then the derivatives of B = S w give, by the quotient rule, bounds for those of S.
+    fn second_bounds(&self, part: [[f64; 2]; 2]) -> Option<[f64; 3]> {
+        let mut cut = self.points.clone();
+        for axis in [0, 1] {
+            net::restrict(&mut cut, self.degrees, axis, part[axis]);
+        }
+        let bounds = Aabb::of(cut.iter().copied().map(projected));
+        let middle = bounds.center();
+        let moved: Vec<Vec4> = cut.iter().map(|p| (p.truncate() - p.w * middle).extend(p.w)).collect();
+        let least = moved.iter().fold(f64::INFINITY, |least, p| least.min(p.w));
+        let radius = moved.iter().map(|p| p.truncate().length() / p.w).fold(0.0, f64::max);
+        let rates = part.map(|[low, high]| 1.0 / (high - low));
+        let by = |u: usize, v: usize| self.derivative_bounds(&moved, [u, v], rates);
+        let first = |(b, w): (f64, f64)| (b + w * radius) / least;
+        let ((bu, wu), (bv, wv)) = (by(1, 0), by(0, 1));
+        let (du, dv) = (first((bu, wu)), first((bv, wv)));
+        let second = |(b, w): (f64, f64), cross: f64| (b + cross + w * radius) / least * (1.0 + 1e-12);
+        Some([
+            second(by(2, 0), 2.0 * wu * du),
+            second(by(1, 1), wu * dv + wv * du),
+            second(by(0, 2), 2.0 * wv * dv),
+        ])
+    }
+}
+
+impl RationalPatch {
+    /// The largest lengths of a derivative of the points and of the weight, for a net over a part.
+    fn derivative_bounds(&self, net: &[Vec4], orders: [usize; 2], rates: [f64; 2]) -> (f64, f64) {
+        let (mut points, mut degrees) = (net.to_vec(), self.degrees);
+        let mut rate = 1.0;
+        for axis in [0, 1] {
+            for _ in 0..orders[axis] {
+                (points, degrees) = net::derivative(&points, degrees, axis);
+                rate *= rates[axis];
+            }
+        }
+        let most = |f: fn(&Vec4) -> f64| points.iter().map(f).fold(0.0, f64::max) * rate;
+        (most(|p| p.truncate().length()), most(|p| p.w.abs()))
+    }
+}

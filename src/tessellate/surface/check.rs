@@ -1,0 +1,133 @@
+//! How far a triangle is off its surface: a proof, and a measurement.
+
+use super::table::Table;
+use crate::math::Vec3;
+use crate::surface::Surface;
+
+/// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
+pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
+    let rough = bound_by(table.bend(parameters), parameters);
+    if rough <= 1.0 {
+        return rough;
+    }
+    let range = |axis: usize| {
+        let all = parameters.map(|p| p[axis]);
+        [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let part = [range(0), range(1)];
+    // Finer bounds cost much: only where they may help, or where a triangle is far smaller than its cell.
+    const MAY_HELP: f64 = 1.5;
+    if rough > MAY_HELP && !table.is_far_smaller(part) {
+        return rough;
+    }
+    if part.iter().any(|[low, high]| low >= high) {
+        return rough;
+    }
+    let tolerance = table.tolerance(parameters);
+    let tight = surface.second_bounds(part).map(|bends| bound_by(bends.map(|b| b / tolerance), parameters));
+    tight.map_or(rough, |tight| tight.min(rough))
+}
+
+/// Half the squared radius of the smallest circle around the triangle in a norm that bounds the second derivatives:
+/// `2 uv |du dv| <= uv (s du^2 + dv^2 / s)` for every s.
+fn bound_by([uu, uv, vv]: [f64; 3], parameters: &[[f64; 2]; 3]) -> f64 {
+    let with = |s: f64| {
+        let scale = [(uu + s * uv).sqrt(), (vv + uv / s).sqrt()];
+        0.5 * enclosing_radius_squared(parameters.map(|p| [p[0] * scale[0], p[1] * scale[1]]))
+    };
+    if uv == 0.0 {
+        return with(1.0);
+    }
+    let extent = |axis: usize| {
+        let all = parameters.map(|p| p[axis]);
+        all.into_iter().fold(f64::NEG_INFINITY, f64::max) - all.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let by_shape = extent(1) / extent(0);
+    let by_bends = (uu / vv).sqrt();
+    let fits = |s: &f64| *s > 0.0 && s.is_finite();
+    [by_shape, by_bends, (by_shape * by_bends).sqrt()]
+        .into_iter()
+        .filter(fits)
+        .map(with)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The squared radius of the smallest circle around three points.
+fn enclosing_radius_squared([p, q, r]: [[f64; 2]; 3]) -> f64 {
+    let square = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
+    let (a, b, c) = (square(q, r), square(r, p), square(p, q));
+    let longest = a.max(b).max(c);
+    let others = (a + b + c) - longest;
+    let cross = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    if others <= longest || cross == 0.0 {
+        return 0.25 * longest;
+    }
+    // The circumcircle; no larger circle is ever needed.
+    (a * b * c / (4.0 * cross * cross)).min(longest / 3.0)
+}
+
+/// Barycentric coordinates where distances are measured.
+const PLACES: [[f64; 3]; 7] = [
+    [0.5, 0.5, 0.0],
+    [0.0, 0.5, 0.5],
+    [0.5, 0.0, 0.5],
+    [1.0 / 3.0; 3],
+    [0.6, 0.2, 0.2],
+    [0.2, 0.6, 0.2],
+    [0.2, 0.2, 0.6],
+];
+
+/// The largest distance found between a triangle and its part of the surface: of places of the triangle from points of
+/// the surface that Newton steps bring near. Those points cover the surface as the places cover the mesh, so it is the
+/// distance both ways.
+pub(super) fn measure(surface: &dyn Surface, parameters: &[[f64; 2]; 3], corners: [Vec3; 3]) -> f64 {
+    let domain = surface.domain();
+    let mut most: f64 = 0.0;
+    for weights in PLACES {
+        let start = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>());
+        let place: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
+        let near = distance_from(surface, domain, place, start);
+        // NaN must not pass for small.
+        most = if near <= most { most } else { near };
+    }
+    most
+}
+
+/// The distance of a place from the surface near some parameters: Gauss-Newton steps inside the domain as long as they
+/// bring it much nearer.
+fn distance_from(surface: &dyn Surface, domain: [[f64; 2]; 2], place: Vec3, start: [f64; 2]) -> f64 {
+    const STEPS: usize = 12;
+    const MUCH: f64 = 0.9;
+    let mut at = start;
+    let mut jet = surface.jet(at[0], at[1]);
+    let mut distance = (place - jet.point).length();
+    for _ in 0..STEPS {
+        let off = place - jet.point;
+        let [e, f, g] = jet.first_form();
+        let (a, b) = (off.dot(jet.du), off.dot(jet.dv));
+        let determinant = e * g - f * f;
+        let clamped = |axis: usize, t: f64| t.clamp(domain[axis][0], domain[axis][1]);
+        let free = [at[0] + (g * a - f * b) / determinant, at[1] + (e * b - f * a) / determinant];
+        if !(free[0].is_finite() && free[1].is_finite()) {
+            break;
+        }
+        let mut next = [clamped(0, free[0]), clamped(1, free[1])];
+        // On a side of the domain the best is along it.
+        if next[0] != free[0] && next[1] == free[1] && g > 0.0 {
+            next[1] = clamped(1, at[1] + (b - f * (next[0] - at[0])) / g);
+        } else if next[1] != free[1] && next[0] == free[0] && e > 0.0 {
+            next[0] = clamped(0, at[0] + (a - f * (next[1] - at[1])) / e);
+        }
+        let new = surface.jet(next[0], next[1]);
+        let nearer = (place - new.point).length();
+        if nearer >= distance || nearer.is_nan() {
+            break;
+        }
+        let enough = nearer > MUCH * distance;
+        (at, jet, distance) = (next, new, nearer);
+        if enough {
+            break;
+        }
+    }
+    distance
+}

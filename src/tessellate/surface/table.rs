@@ -1,0 +1,172 @@
+//! How a piece bends, cell by cell: what its density of vertices and the check of its triangles come from.
+
+use super::{Guarantee, SurfaceOptions, TessellationError};
+use crate::surface::{Jet, Side, Surface};
+
+/// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
+const CELLS: [usize; 2] = [12, 32];
+/// Share of the mixed derivative that counts as bending along an axis that has none of its own.
+const LEAST_SHARE: f64 = 0.1;
+
+pub(super) struct Table {
+    domain: [[f64; 2]; 2],
+    pub(super) cells: [usize; 2],
+    /// Second derivatives over tolerance, by uu, uv, vv.
+    bends: Vec<[f64; 3]>,
+    tolerances: Vec<f64>,
+    /// Segments that a length of 1 along u, and along v, needs.
+    densities: Vec<[f64; 2]>,
+    /// Whether the bends are bounds.
+    pub(super) proven: bool,
+}
+
+impl Table {
+    pub(super) fn new(
+        index: usize,
+        surface: &dyn Surface,
+        domain: [[f64; 2]; 2],
+        options: &SurfaceOptions,
+    ) -> Result<Table, TessellationError> {
+        let cells = [if surface.border_net(Side::Bottom).is_some() { CELLS[0] } else { CELLS[1] }; 2];
+        let at = |axis: usize, k: usize| {
+            let [low, high] = domain[axis];
+            if k == cells[axis] { high } else { low + (high - low) * k as f64 / cells[axis] as f64 }
+        };
+        let bounds = match options.guarantee {
+            Guarantee::Proven if domain == surface.domain() => surface.second_bounds_table(cells),
+            Guarantee::Proven => {
+                let part = |k: usize| {
+                    let (i, j) = (k / cells[1], k % cells[1]);
+                    surface.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
+                };
+                (0..cells[0] * cells[1]).map(part).collect()
+            }
+            Guarantee::Measured => None,
+        };
+        let needed = bounds.is_none() || options.angle.is_some();
+        let mut table = Table {
+            domain,
+            cells,
+            bends: Vec::new(),
+            tolerances: Vec::new(),
+            densities: Vec::new(),
+            proven: bounds.is_some(),
+        };
+        for cell in 0..cells[0] * cells[1] {
+            let (i, j) = (cell / cells[1], cell % cells[1]);
+            let middle = [0.5 * at(0, i) + 0.5 * at(0, i + 1), 0.5 * at(1, j) + 0.5 * at(1, j + 1)];
+            let jet = needed.then(|| surface.jet(middle[0], middle[1]));
+            if jet.is_some_and(|jet| !jet.point.is_finite()) {
+                return Err(TessellationError::NotFinite { surface: index, parameters: middle });
+            }
+            let tolerance = match options.precision {
+                super::Precision::Distance(tolerance) => tolerance,
+                precision @ super::Precision::View(_) => [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)]
+                    .map(|(i, j)| precision.at(surface.point(at(0, i), at(1, j))))
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min),
+            };
+            let bend = match &bounds {
+                Some(bounds) => bounds[cell],
+                None => jet.as_ref().map_or([0.0; 3], measured_bend),
+            };
+            if !bend.iter().all(|b| b.is_finite()) {
+                return Err(TessellationError::NotReached { surface: index, parameters: middle });
+            }
+            let bend = bend.map(|b| b / tolerance);
+            let turn = match (options.angle, &jet) {
+                (Some(angle), Some(jet)) => turning(jet).map(|rate| rate / angle),
+                _ => [0.0; 2],
+            };
+            let plain = table.density_of(bend);
+            table.bends.push(bend);
+            table.tolerances.push(tolerance);
+            table.densities.push([plain[0].max(turn[0]), plain[1].max(turn[1])]);
+        }
+        Ok(table)
+    }
+
+    /// Right triangles with legs of one segment then err by one tolerance: the mixed derivative is shared between the
+    /// axes so that their product is least.
+    fn density_of(&self, [uu, uv, vv]: [f64; 3]) -> [f64; 2] {
+        let [du, dv] = self.domain.map(|[low, high]| high - low);
+        let (a, c) = (uu + LEAST_SHARE * uv * dv / du, vv + LEAST_SHARE * uv * du / dv);
+        let ratio = if c > 0.0 { (a / c).sqrt() } else { 1.0 };
+        let (along_u, along_v) = if ratio > 0.0 { (uu + ratio * uv, vv + uv / ratio) } else { (uu, vv) };
+        [0.5 * along_u.sqrt(), 0.5 * along_v.sqrt()]
+    }
+
+    /// Cells that the box of some parameters meets, as ranges of indices.
+    fn met(&self, parameters: &[[f64; 2]; 3]) -> [[usize; 2]; 2] {
+        [0, 1].map(|axis: usize| {
+            let [low, high] = self.domain[axis];
+            let count = self.cells[axis];
+            let index = |t: f64| (((t - low) / (high - low) * count as f64) as usize).min(count - 1);
+            let all = parameters.map(|p| p[axis]);
+            let least = all.into_iter().fold(f64::INFINITY, f64::min);
+            let most = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            [index(least), index(most)]
+        })
+    }
+
+    /// Whether a part is narrower than a quarter of a cell along an axis.
+    pub(super) fn is_far_smaller(&self, part: [[f64; 2]; 2]) -> bool {
+        [0, 1].into_iter().any(|axis: usize| {
+            let [low, high] = self.domain[axis];
+            (part[axis][1] - part[axis][0]) * self.cells[axis] as f64 <= 0.25 * (high - low)
+        })
+    }
+
+    fn met_cells(&self, parameters: &[[f64; 2]; 3]) -> impl Iterator<Item = usize> + use<> {
+        let [[i0, i1], [j0, j1]] = self.met(parameters);
+        let width = self.cells[1];
+        (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| i * width + j))
+    }
+
+    /// The largest bends around a triangle.
+    pub(super) fn bend(&self, parameters: &[[f64; 2]; 3]) -> [f64; 3] {
+        self.met_cells(parameters).fold([0.0; 3], |most: [f64; 3], cell| {
+            let bend = self.bends[cell];
+            [most[0].max(bend[0]), most[1].max(bend[1]), most[2].max(bend[2])]
+        })
+    }
+
+    /// The least tolerance around a triangle.
+    pub(super) fn tolerance(&self, parameters: &[[f64; 2]; 3]) -> f64 {
+        self.met_cells(parameters).map(|cell| self.tolerances[cell]).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Segments that a length of 1 along an axis needs in a cell.
+    pub(super) fn density(&self, i: usize, j: usize, axis: usize) -> f64 {
+        let cell = i * self.cells[1] + j;
+        self.densities[cell][axis]
+    }
+
+    /// The square of the length of a step, in segments.
+    pub(super) fn length_squared(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+        let middle = [0, 1].map(|axis: usize| 0.5 * from[axis] + 0.5 * to[axis]);
+        let [[i, _], [j, _]] = self.met(&[middle; 3]);
+        let along = [0, 1].map(|axis: usize| (to[axis] - from[axis]) * self.density(i, j, axis));
+        along[0] * along[0] + along[1] * along[1]
+    }
+}
+
+/// The second fundamental form, each entry without its sign; zero where there is no normal.
+fn measured_bend(jet: &Jet) -> [f64; 3] {
+    jet.second_form().unwrap_or([0.0; 3]).map(f64::abs)
+}
+
+/// How fast the normal turns along u and along v, from the shape operator.
+fn turning(jet: &Jet) -> [f64; 2] {
+    let (Some([l, m, n]), [e, f, g]) = (jet.second_form(), jet.first_form()) else { return [0.0; 2] };
+    let determinant = e * g - f * f;
+    if determinant <= 0.0 {
+        return [0.0; 2];
+    }
+    // N_u = -(a S_u + b S_v) with the first form times (a, b) equal to (L, M), and so for v.
+    let rate = |p: f64, q: f64| {
+        let (a, b) = ((g * p - f * q) / determinant, (e * q - f * p) / determinant);
+        (a * jet.du + b * jet.dv).length()
+    };
+    [rate(l, m), rate(m, n)]
+}
