@@ -169,6 +169,10 @@ impl Frame<'_> {
     /// a monotone polygon, and every corner is cut off as soon as it sticks out (Garey, Johnson, Preparata, Tarjan,
     /// Triangulating a simple polygon, 1978).
     fn side_strip(&self, right: &[Local], left: &[Local], axis: usize, triangles: &mut Vec<[Local; 3]>) {
+        if right.len() == 1 {
+            // A pole: a fan, since it is over every end alike.
+            return self.strip(right, left, triangles);
+        }
         let at = |local: Local| self.nodes[local as usize].at;
         let upward = at(right[right.len() - 1])[axis] >= at(right[0])[axis];
         let before = |a: Local, b: Local| (at(a)[axis] <= at(b)[axis]) == upward;
