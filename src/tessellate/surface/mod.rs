@@ -176,6 +176,14 @@ pub enum TessellationError {
         /// The parameters.
         parameters: [f64; 2],
     },
+    /// Vertices are so near each other for the tolerance that triangles or edges coincide, also with more of them: the
+    /// surface folds back onto itself.
+    Tangled {
+        /// Edges with more than two triangles.
+        edges: usize,
+        /// Triangles that come twice.
+        triangles: usize,
+    },
     /// More triangles than allowed.
     TooLarge {
         /// How many there would be, about.
@@ -201,6 +209,12 @@ impl fmt::Display for TessellationError {
                 write!(
                     f,
                     "surface {surface} cannot be followed at u = {u}, v = {v}: it has a tear or a cusp there"
+                )
+            }
+            TessellationError::Tangled { edges, triangles } => {
+                write!(
+                    f,
+                    "the surface folds back onto itself: {edges} edges have more than two triangles and {triangles} triangles come twice"
                 )
             }
             TessellationError::TooLarge { triangles, most } => {
@@ -246,22 +260,20 @@ pub fn surfaces(
     const ATTEMPTS: [usize; 4] = [1, 2, 3, 5];
     let layout = Layout::new(surfaces)?;
     layout.check_precision(options)?;
-    let mut made = None;
+    let mut tangled = None;
     for least in ATTEMPTS {
-        let tessellation = match (attempt(&layout, options, least), &made) {
-            (Ok(tessellation), _) => tessellation,
-            // What was made before is within the tolerance, whatever its edges.
-            (Err(_), Some(_)) => break,
-            (Err(error), None) => return Err(error),
+        let tessellation = match attempt(&layout, options, least) {
+            Ok(tessellation) => tessellation,
+            Err(error) => return Err(tangled.unwrap_or(error)),
         };
         let defects = Defects::of(&tessellation.mesh);
-        let sound = defects.duplicate_triangles == 0 && defects.non_manifold_edges <= layout.crowded_edges();
-        made = Some(tessellation);
-        if sound {
-            break;
+        let edges = defects.non_manifold_edges.saturating_sub(layout.crowded_edges());
+        if edges == 0 && defects.duplicate_triangles == 0 {
+            return Ok(tessellation);
         }
+        tangled = Some(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
     }
-    Ok(made.expect("there is an attempt"))
+    Err(tangled.expect("there was an attempt"))
 }
 
 fn attempt(
