@@ -198,7 +198,7 @@ fn the_program_reads_patches() {
         summary["error bound"].is_null() && summary["error measured"].as_f64().is_some_and(|e| e <= 0.05)
     );
     let wrong: [(&[&str], i32, &str); 5] = [
-        (&["build", "teapot.bpt", "--tolerance", "-1", "-o", "a.obj"], 2, "-1"),
+        (&["build", "teapot.bpt", "--tolerance", "-1", "-o", "a.obj"], 1, "-1"),
         (
             &["build", "teapot.bpt", "--tolerance", "0", "-o", "a.obj"],
             1,

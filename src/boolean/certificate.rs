@@ -5,7 +5,7 @@ use super::repair::Patient;
 use super::tree::Tree;
 use super::world::Labels;
 use super::{Birth, Combined, Operand, Steps, arrive, strategy};
-use crate::mesh::{Mesh, Solid, crossing_pairs};
+use crate::mesh::{Mesh, Solid, components, crossing_pairs};
 use crate::polygon::exact::Origin;
 
 /// What a result is known to be. That it is closed and two-manifold is part of what a [`Solid`] is.
@@ -111,7 +111,7 @@ impl Repaired {
 
 /// Takes out what is thin around crossings, thicker things every time, until there are none. Where nothing thin is left to
 /// take out, or that does not help, the surface is cut along its crossings as an operand would be. `None` when crossings
-/// stay.
+/// stay, or when handles or parts would come or go: cutting joins a solid to itself where it pinches itself at an edge.
 fn repair(
     mesh: &Mesh,
     birth: &[Birth],
@@ -138,10 +138,15 @@ fn repair(
             in_vain = 0;
         }
         if crossings.is_empty() {
-            return Some(Repaired::of(patient));
+            return Some(Repaired::of(patient)).filter(|repaired| shape_of(&repaired.mesh) == shape_of(mesh));
         }
     }
     None
+}
+
+/// What repair must not change: components, and vertices less edges plus faces.
+fn shape_of(mesh: &Mesh) -> (usize, i64) {
+    (components(mesh).len(), mesh.positions.len() as i64 - mesh.triangles.len() as i64 / 2)
 }
 
 /// The surface as an operand that crosses itself, made sound and rounded again.

@@ -72,11 +72,13 @@ impl Job {
             Ok(Kind::Mesh(_)) => Some("this is a mesh, not a script; see `ogee info` and `ogee boolean`"),
             Ok(Kind::Drawing) => Some("this is a drawing, not a script; see `ogee info` and `ogee plot`"),
             Ok(Kind::Table | Kind::Points) => Some("these are data, not a script; see `ogee plot`"),
-            Ok(kind) => misplaced(kind, args),
-            Err(_) => None,
+            Ok(_) | Err(_) => None,
         };
         if let Some(hint) = hint {
             return Err(Stop::about(source, hint));
+        }
+        if let Some(hint) = kind.as_ref().ok().and_then(|&kind| misplaced(kind, args)) {
+            return Err(Stop::Usage(hint.to_owned()));
         }
         let outputs = output::plan_beside(args.summary, &args.output, args.format)?;
         // A file that is not there is explained where it is read.

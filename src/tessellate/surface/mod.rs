@@ -256,24 +256,29 @@ pub fn surfaces(
     options: &SurfaceOptions,
 ) -> Result<Tessellation, TessellationError> {
     check_options(options)?;
-    // Coarse vertices can name one edge twice; more of them on every edge cannot in the end.
-    const ATTEMPTS: [usize; 4] = [1, 2, 3, 5];
+    // Coarse vertices can name one edge twice, and beside a straight side of a twisted surface long edges can be too far
+    // off; more vertices on every edge help with both.
+    const ATTEMPTS: [usize; 8] = [1, 2, 3, 5, 9, 17, 33, 65];
     let layout = Layout::new(surfaces)?;
     layout.check_precision(options)?;
-    let mut tangled = None;
+    let mut failed = None;
     for least in ATTEMPTS {
         let tessellation = match attempt(&layout, options, least) {
             Ok(tessellation) => tessellation,
-            Err(error) => return Err(tangled.unwrap_or(error)),
+            Err(error @ TessellationError::NotReached { .. }) => {
+                failed.get_or_insert(error);
+                continue;
+            }
+            Err(error) => return Err(failed.unwrap_or(error)),
         };
         let defects = Defects::of(&tessellation.mesh);
         let edges = defects.non_manifold_edges.saturating_sub(layout.crowded_edges());
         if edges == 0 && defects.duplicate_triangles == 0 {
             return Ok(tessellation);
         }
-        tangled = Some(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
+        failed.get_or_insert(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
     }
-    Err(tangled.expect("there was an attempt"))
+    Err(failed.expect("there was an attempt"))
 }
 
 fn attempt(
