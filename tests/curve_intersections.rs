@@ -217,11 +217,9 @@ fn overlaps_are_wrong(a: &Cubic<Vec2>, b: &Cubic<Vec2>, found: &[Meeting]) -> Op
     (0..=64).map(|k| (f64::from(k) + 0.37) / 65.0).find_map(|s| {
         let distance = ogee::curve::nearest(b, a.eval(s)).unwrap().distance.value;
         let inside = found.iter().any(|m| m.contact == Contact::Overlap && m.first[0] < s && s < m.first[1]);
-        // Curves that touch with a high multiplicity hug each other around the point.
-        let here = a.eval(s);
-        let near_end = found
-            .iter()
-            .any(|m| m.first.iter().any(|end| (end - s).abs() < 1e-3) || m.point.distance(here) < 1e-5);
+        // Curves that touch hug each other around the point; elimination has told that they meet there only once.
+        let hug = |m: &Meeting| if matches!(m.contact, Contact::Tangency { .. }) { 1e-2 } else { 1e-3 };
+        let near_end = found.iter().any(|m| m.first.iter().any(|end| (end - s).abs() < hug(m)));
         let wrong = if inside { distance > 1e-12 * 64.0 } else { distance < 1e-12 && !near_end };
         wrong.then(|| format!("at {s}: {distance} from the other, found {found:?}"))
     })
