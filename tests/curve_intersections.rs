@@ -219,7 +219,7 @@ fn overlaps_are_wrong(a: &Cubic<Vec2>, b: &Cubic<Vec2>, found: &[Meeting]) -> Op
         let inside = found.iter().any(|m| m.contact == Contact::Overlap && m.first[0] < s && s < m.first[1]);
         // Curves that touch m-fold are apart by the m-th power of the way from there, where elimination has counted.
         let hug = |m: &Meeting| match m.contact {
-            Contact::Tangency { multiplicity } => pow(1e-12, 1.0 / multiplicity as f64).max(1e-2),
+            Contact::Tangency { multiplicity } => pow(1e-10, 1.0 / multiplicity as f64).max(1e-2),
             _ => 1e-3,
         };
         let near_end = found.iter().any(|m| m.first.iter().any(|end| (end - s).abs() < hug(m)));

@@ -35,7 +35,9 @@ impl World<'_> {
             && self.places.is_exact()
             && points.iter().all(|&point| self.places.is_given(point));
         let exact = body.embedded && !is_parted;
-        let origin = if embedded { None } else { self.origin_of(&body, &points, exact) };
+        // Edges too short to be parted leave triangles without area, which have no place in an exact surface.
+        let has_flat = is_parted && body.corners.iter().any(|&[a, b, c]| a == b || b == c || c == a);
+        let origin = if embedded || has_flat { None } else { self.origin_of(&body, &points, exact) };
         let movement = origin.as_ref().map_or(0.0, |origin| self.movement(origin, &positions));
         let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
         Rounded { mesh, birth: body.births, embedded, origin, movement }
@@ -130,6 +132,9 @@ impl Numbered {
                 continue;
             }
             triangles.into_iter().for_each(|t| is_cut[t] = true);
+            for side in [half_edge, twin, beside, self.body.twins[beside as usize]] {
+                self.name_plane(world, side / 3);
+            }
             let on_the_way = self.point_on(world, half_edge, beside);
             for side in [half_edge, twin] {
                 self.name_line(world, side);
@@ -183,6 +188,17 @@ impl Numbered {
         };
         let mut points = lines.iter().filter_map(|line| world.places.points.meeting(&face, line, &across));
         points.next().expect("two faces in different planes meet along the edge")
+    }
+
+    /// Gives an untouched triangle, which is one between lattice points, its plane.
+    fn name_plane(&mut self, world: &mut World<'_>, triangle: u32) {
+        let t = triangle as usize;
+        if self.body.facings[t].known().is_none() {
+            let site = |p: PointId| world.points().as_site(p).expect("cut faces know their plane");
+            let [a, b, c] = self.body.corners[t].map(site);
+            let plane = Plane::through(a, b, c).expect("the triangle has area");
+            self.body.facings[t] = world.facing(&plane);
+        }
     }
 
     /// Gives a half-edge between lattice points a line, which its halves will need.
