@@ -10,7 +10,7 @@ mod roots;
 use num_bigint::BigInt;
 use num_traits::Signed;
 use ogee::curve::{AnyBezier, Bernstein, Contact, Cubic, Meeting, intersect, self_intersections};
-use ogee::math::{Vec2, pow, sin_cos};
+use ogee::math::{Vec2, sin_cos};
 use roots::{BITS, Curve, eliminated, integers, monomials, own_eliminated};
 
 /// A generator of numbers (Steele, Lea, Flood, SplitMix64, 2014).
@@ -217,12 +217,7 @@ fn overlaps_are_wrong(a: &Cubic<Vec2>, b: &Cubic<Vec2>, found: &[Meeting]) -> Op
     (0..=64).map(|k| (f64::from(k) + 0.37) / 65.0).find_map(|s| {
         let distance = ogee::curve::nearest(b, a.eval(s)).unwrap().distance.value;
         let inside = found.iter().any(|m| m.contact == Contact::Overlap && m.first[0] < s && s < m.first[1]);
-        // Curves that touch m-fold are apart by the m-th power of the way from there, where elimination has counted.
-        let hug = |m: &Meeting| match m.contact {
-            Contact::Tangency { multiplicity } => pow(1e-10, 1.0 / multiplicity as f64).max(1e-2),
-            _ => 1e-3,
-        };
-        let near_end = found.iter().any(|m| m.first.iter().any(|end| (end - s).abs() < hug(m)));
+        let near_end = found.iter().any(|m| m.first.iter().any(|end| (end - s).abs() < 1e-3));
         let wrong = if inside { distance > 1e-12 * 64.0 } else { distance < 1e-12 && !near_end };
         wrong.then(|| format!("at {s}: {distance} from the other, found {found:?}"))
     })
