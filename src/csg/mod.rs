@@ -10,6 +10,7 @@ mod flat;
 mod frame;
 mod leaf;
 mod plan;
+mod parametric;
 mod print;
 mod solve;
 mod surface;
@@ -19,6 +20,7 @@ pub use build::{
     BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, build, build_with_progress,
 };
 pub use print::print;
+pub use parametric::Parametric;
 pub use surface::{Explicit, SurfaceBody};
 
 use crate::boolean::Op;

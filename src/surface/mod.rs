@@ -181,6 +181,11 @@ pub enum SurfaceError {
         /// The highest that is taken.
         most: usize,
     },
+    /// A coordinate is not made of plain operations alone.
+    NotPlain {
+        /// Which one: 0, 1 or 2.
+        axis: usize,
+    },
     /// A ray runs along a surface instead of meeting it in points.
     AlongRay,
     /// A curve that the surface is made of is wrong.
@@ -200,6 +205,9 @@ impl fmt::Display for SurfaceError {
             }
             SurfaceError::Degree { actual, most } => {
                 write!(f, "degree {actual} where {most} is the highest")
+            }
+            SurfaceError::NotPlain { axis } => {
+                write!(f, "coordinate {axis} is not a formula in plain operations")
             }
             SurfaceError::AlongRay => f.write_str("the ray runs along the surface"),
             SurfaceError::Curve(error) => error.fmt(f),
