@@ -56,7 +56,7 @@ fn refs(patches: &[Patch]) -> Vec<&dyn Surface> {
 }
 
 fn solid(mesh: &Mesh) -> Solid {
-    Solid::new(capped(mesh).unwrap()).unwrap_or_else(|defects| panic!("{defects:?}"))
+    Solid::new(capped(mesh, 0.0).unwrap()).unwrap_or_else(|defects| panic!("{defects:?}"))
 }
 
 #[test]
@@ -579,7 +579,7 @@ fn one_sided_surfaces_become_plates() {
         let defects = Defects::of(&made.mesh);
         assert_eq!(defects.open_edges > 0, open);
         assert!(defects.misoriented_edges > 0 && defects.non_manifold_edges == 0);
-        assert_eq!(capped(&made.mesh), Err(ogee::tessellate::CloseError::OneSided));
+        assert_eq!(capped(&made.mesh, 0.0), Err(ogee::tessellate::CloseError::OneSided));
         let plate = Solid::new(thickened(&made.mesh, 0.1).unwrap()).unwrap();
         let thin = 0.1 * ogee::mesh::area(&made.mesh);
         assert!((plate.volume() - thin).abs() < 0.1 * thin, "{} {thin}", plate.volume());

@@ -64,7 +64,7 @@ impl SurfaceBody {
         let mesh = made?.mesh;
         Ok(match self.thickness {
             Some(thickness) => thickened(&mesh, thickness)?,
-            None => capped(&mesh)?,
+            None => capped(&mesh, self.tolerance)?,
         })
     }
 
@@ -82,7 +82,7 @@ impl SurfaceBody {
                 }
             }
             Explicit::Sweep(sweep) => widened(Aabb::of(sweep.path().points().iter().copied()), sweep.reach()),
-            Explicit::Tube(tube) => widened(Aabb::of(tube.path().points().iter().copied()), tube.radius()),
+            Explicit::Tube(tube) => widened(Aabb::of(tube.path().points().iter().copied()), tube.reach()),
             Explicit::Parametric(parametric) => parametric.bounds(),
         };
         // Rounding of the frames, and of the points.

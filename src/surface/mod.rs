@@ -22,8 +22,10 @@
 
 mod area;
 mod b_spline;
+mod bends;
 mod classic;
 mod formula;
+mod frames;
 mod grid;
 mod jet;
 mod limit;
@@ -39,6 +41,7 @@ mod sweep;
 
 pub use area::area;
 pub use b_spline::from_b_spline;
+pub use bends::{Across, Bends};
 pub use classic::Classic;
 pub use formula::Formula;
 pub use jet::{Curvature, Jet};
@@ -120,8 +123,14 @@ pub trait Surface: Sync {
         None
     }
 
-    /// [`Surface::second_bounds`] of all cells of a regular grid over the domain, v running fastest.
-    fn second_bounds_table(&self, cells: [usize; 2]) -> Option<Vec<[f64; 3]>> {
+    /// [`Surface::second_bounds`], and what of the second derivatives is across the surface: with that it takes fewer
+    /// triangles where parameters are stretched unevenly.
+    fn bends(&self, part: [[f64; 2]; 2]) -> Option<Bends> {
+        self.second_bounds(part).map(|lengths| Bends { lengths, across: None })
+    }
+
+    /// [`Surface::bends`] of all cells of a regular grid over the domain, v running fastest.
+    fn bends_table(&self, cells: [usize; 2]) -> Option<Vec<Bends>> {
         let domain = self.domain();
         let at = |axis: usize, k: usize| {
             let [low, high] = domain[axis];
@@ -129,7 +138,7 @@ pub trait Surface: Sync {
         };
         let cell = |index: usize| {
             let (i, j) = (index / cells[1], index % cells[1]);
-            self.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
+            self.bends([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
         };
         (0..cells[0] * cells[1]).map(cell).collect()
     }
@@ -186,6 +195,11 @@ pub enum SurfaceError {
         /// Which one: 0, 1 or 2.
         axis: usize,
     },
+    /// A path turns back on itself: nothing can be carried around that corner.
+    Reversal {
+        /// The parameter of the corner.
+        parameter: f64,
+    },
     /// A ray runs along a surface instead of meeting it in points.
     AlongRay,
     /// A curve that the surface is made of is wrong.
@@ -209,6 +223,7 @@ impl fmt::Display for SurfaceError {
             SurfaceError::NotPlain { axis } => {
                 write!(f, "coordinate {axis} is not a formula in plain operations")
             }
+            SurfaceError::Reversal { parameter } => write!(f, "the path turns back on itself at {parameter}"),
             SurfaceError::AlongRay => f.write_str("the ray runs along the surface"),
             SurfaceError::Curve(error) => error.fmt(f),
         }

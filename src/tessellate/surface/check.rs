@@ -1,20 +1,26 @@
 //! How far a triangle is off its surface: a proof, and a measurement.
 
+use super::slide::{self, Turned};
 use super::table::Table;
 use crate::math::Vec3;
 use crate::surface::Surface;
 
 /// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
 pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
-    let rough = bound_by(table.bend(parameters), parameters);
-    if rough <= 1.0 {
-        return rough;
+    let whole = bound_by(table.bend(parameters), parameters);
+    if whole > slide::MOST {
+        return whole;
     }
     let range = |axis: usize| {
         let all = parameters.map(|p| p[axis]);
         [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     };
     let part = [range(0), range(1)];
+    let across = table.bend_across(parameters, part);
+    let rough = across.map_or(whole, |bends| bound_by(bends, parameters)) + table.cost(parameters, whole);
+    if rough <= 1.0 {
+        return rough;
+    }
     // Finer bounds cost much: only where they may help, or where a triangle is far smaller than its cell.
     const MAY_HELP: f64 = 1.5;
     if rough > MAY_HELP && !table.is_far_smaller(part) {
@@ -23,9 +29,15 @@ pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]
     if part.iter().any(|[low, high]| low >= high) {
         return rough;
     }
+    let Some(bends) = surface.bends(part) else { return rough };
     let tolerance = table.tolerance(parameters);
-    let tight = surface.second_bounds(part).map(|bends| bound_by(bends.map(|b| b / tolerance), parameters));
-    tight.map_or(rough, |tight| tight.min(rough))
+    let lengths = bends.lengths.map(|length| length / tolerance);
+    let whole = whole.min(bound_by(lengths, parameters));
+    let tight = match bends.across.filter(|_| across.is_some()) {
+        Some(across) => bound_by(Turned::new(&across, lengths, tolerance).bends(lengths), parameters),
+        None => whole,
+    };
+    rough.min(tight + table.cost(parameters, whole))
 }
 
 /// Half the squared radius of the smallest circle around the triangle in a norm that bounds the second derivatives:
@@ -80,15 +92,29 @@ const PLACES: [[f64; 3]; 7] = [
 /// The largest distance found between a triangle and its part of the surface: of places of the triangle from points of
 /// the surface that Newton steps bring near. Those points cover the surface as the places cover the mesh, so it is the
 /// distance both ways.
-pub(super) fn measure(surface: &dyn Surface, parameters: &[[f64; 2]; 3], corners: [Vec3; 3]) -> f64 {
+///
+/// What is not above `known` is not looked at closely: the result is at least that, and right where it is larger.
+pub(super) fn measure(
+    surface: &dyn Surface,
+    parameters: &[[f64; 2]; 3],
+    corners: [Vec3; 3],
+    known: f64,
+) -> f64 {
     let domain = surface.domain();
-    let mut most: f64 = 0.0;
+    let mut most = known;
     for weights in PLACES {
         let start = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>());
         let place: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
+        let plain = (place - surface.point(start[0], start[1])).length();
+        if plain <= most {
+            continue;
+        }
         let near = distance_from(surface, domain, place, start);
         // NaN must not pass for small.
-        most = if near <= most { most } else { near };
+        if near.is_nan() {
+            return near;
+        }
+        most = most.max(near);
     }
     most
 }

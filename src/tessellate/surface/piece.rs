@@ -134,11 +134,10 @@ fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> 
             continue;
         }
         let parameters = settled(triangle.map(|local| refinement.nodes[local as usize]));
-        if let Some(bound) = &mut made.bound {
-            *bound = bound.max(refinement.ratios[index] * table.tolerance(&parameters));
-        }
+        let bound = refinement.ratios[index] * table.tolerance(&parameters);
+        made.bound = made.bound.map(|most| most.max(bound));
         let corners = triangle.map(|local| refinement.positions[local as usize]);
-        made.measured = made.measured.max(check::measure(surface, &parameters, corners));
+        made.measured = check::measure(surface, &parameters, corners, made.measured);
         made.triangles.push(vertices);
         made.parameters.push(parameters);
     }

@@ -12,6 +12,8 @@ use crate::surface::Surface;
 const NONE: u32 = Topology::NONE;
 /// Share of the tolerance that measured distances may use: between the places that are looked at they may be larger.
 const MEASURED_SHARE: f64 = 0.95;
+/// Below this share of what is allowed, distances need no closer look.
+const SURE: f64 = 0.5;
 /// Parameters nearer than this, over their own size and that of the domain, are not split any more.
 const FINEST: f64 = 1e-10;
 
@@ -94,8 +96,8 @@ impl<'a> Refinement<'a> {
             check::bound(self.table, self.surface, &parameters)
         } else {
             let corners = triangle.map(|local| self.positions[local as usize]);
-            check::measure(self.surface, &parameters, corners)
-                / (MEASURED_SHARE * self.table.tolerance(&parameters))
+            let allowed = MEASURED_SHARE * self.table.tolerance(&parameters);
+            check::measure(self.surface, &parameters, corners, SURE * allowed) / allowed
         };
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }

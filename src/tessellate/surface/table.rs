@@ -1,7 +1,8 @@
 //! How a piece bends, cell by cell: what its density of vertices and the check of its triangles come from.
 
+use super::slide::{Slides, Turned};
 use super::{Guarantee, SurfaceOptions, TessellationError};
-use crate::surface::{Jet, Side, Surface};
+use crate::surface::{Bends, Jet, Side, Surface};
 
 /// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
 const CELLS: [usize; 2] = [12, 32];
@@ -14,6 +15,8 @@ pub(super) struct Table {
     /// Second derivatives over tolerance, by uu, uv, vv.
     bends: Vec<[f64; 3]>,
     tolerances: Vec<f64>,
+    /// Where distances may be measured to other parameters than those of the triangle.
+    slides: Slides,
     /// Segments that a length of 1 along u, and along v, needs.
     densities: Vec<[f64; 2]>,
     /// Whether the bends are bounds.
@@ -33,13 +36,13 @@ impl Table {
             if k == cells[axis] { high } else { low + (high - low) * k as f64 / cells[axis] as f64 }
         };
         let bounds = match options.guarantee {
-            Guarantee::Proven if domain == surface.domain() => surface.second_bounds_table(cells),
+            Guarantee::Proven if domain == surface.domain() => surface.bends_table(cells),
             Guarantee::Proven => {
                 let part = |k: usize| {
                     let (i, j) = (k / cells[1], k % cells[1]);
-                    surface.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
+                    surface.bends([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
                 };
-                (0..cells[0] * cells[1]).map(part).collect()
+                (0..cells[0] * cells[1]).map(part).collect::<Option<Vec<Bends>>>()
             }
             Guarantee::Measured => None,
         };
@@ -49,9 +52,11 @@ impl Table {
             cells,
             bends: Vec::new(),
             tolerances: Vec::new(),
+            slides: Slides::default(),
             densities: Vec::new(),
             proven: bounds.is_some(),
         };
+        let mut turned: Vec<Option<Turned>> = Vec::with_capacity(cells[0] * cells[1]);
         for cell in 0..cells[0] * cells[1] {
             let (i, j) = (cell / cells[1], cell % cells[1]);
             let middle = [0.5 * at(0, i) + 0.5 * at(0, i + 1), 0.5 * at(1, j) + 0.5 * at(1, j + 1)];
@@ -67,7 +72,7 @@ impl Table {
                     .fold(f64::INFINITY, f64::min),
             };
             let bend = match &bounds {
-                Some(bounds) => bounds[cell],
+                Some(bounds) => bounds[cell].lengths,
                 None => jet.as_ref().map_or([0.0; 3], measured_bend),
             };
             if !bend.iter().all(|b| b.is_finite()) {
@@ -78,11 +83,15 @@ impl Table {
                 (Some(angle), Some(jet)) => turning(jet).map(|rate| rate / angle),
                 _ => [0.0; 2],
             };
-            let plain = table.density_of(bend);
+            let across = bounds.as_ref().and_then(|bounds| bounds[cell].across);
+            let across = across.map(|across| Turned::new(&across, bend, tolerance));
+            let plain = table.density_of(across.as_ref().map_or(bend, |across| across.bends(bend)));
+            turned.push(across);
             table.bends.push(bend);
             table.tolerances.push(tolerance);
             table.densities.push([plain[0].max(turn[0]), plain[1].max(turn[1])]);
         }
+        table.slides = Slides::new(domain, cells, turned, &table.bends, &table.tolerances);
         Ok(table)
     }
 
@@ -97,7 +106,7 @@ impl Table {
     }
 
     /// Cells that the box of some parameters meets, as ranges of indices.
-    fn met(&self, parameters: &[[f64; 2]; 3]) -> [[usize; 2]; 2] {
+    pub(super) fn met(&self, parameters: &[[f64; 2]; 3]) -> [[usize; 2]; 2] {
         [0, 1].map(|axis: usize| {
             let [low, high] = self.domain[axis];
             let count = self.cells[axis];
@@ -117,7 +126,7 @@ impl Table {
         })
     }
 
-    fn met_cells(&self, parameters: &[[f64; 2]; 3]) -> impl Iterator<Item = usize> + use<> {
+    fn met_cells(&self, parameters: &[[f64; 2]; 3]) -> impl Iterator<Item = usize> + Clone + use<> {
         let [[i0, i1], [j0, j1]] = self.met(parameters);
         let width = self.cells[1];
         (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| i * width + j))
@@ -129,6 +138,17 @@ impl Table {
             let bend = self.bends[cell];
             [most[0].max(bend[0]), most[1].max(bend[1]), most[2].max(bend[2])]
         })
+    }
+
+    /// The largest bends across the surface around a triangle, where only these count.
+    pub(super) fn bend_across(&self, parameters: &[[f64; 2]; 3], part: [[f64; 2]; 2]) -> Option<[f64; 3]> {
+        let is_inside = self.slides.is_inside(part, self.met(parameters));
+        is_inside.then(|| self.slides.bends(self.met_cells(parameters), &self.bends)).flatten()
+    }
+
+    /// What it costs that only these count, over the tolerance.
+    pub(super) fn cost(&self, parameters: &[[f64; 2]; 3], ratio: f64) -> f64 {
+        self.slides.cost(self.met_cells(parameters), ratio)
     }
 
     /// The least tolerance around a triangle.
