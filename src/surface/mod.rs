@@ -89,6 +89,17 @@ pub trait Surface: Sync {
     /// The point at parameters of the domain.
     fn point(&self, u: f64, v: f64) -> Vec3;
 
+    /// The points at many parameters, within rounding of [`Surface::point`].
+    ///
+    /// # Panics
+    /// When there is not a place for each.
+    fn points(&self, parameters: &[[f64; 2]], out: &mut [Vec3]) {
+        assert_eq!(parameters.len(), out.len(), "a place for each point");
+        for (place, &[u, v]) in out.iter_mut().zip(parameters) {
+            *place = self.point(u, v);
+        }
+    }
+
     /// The point and its first and second derivatives; by default from differences, good to about 1e-9 and 1e-5 of the
     /// size of the surface over that of its domain.
     fn jet(&self, u: f64, v: f64) -> Jet {

@@ -58,15 +58,7 @@ impl RationalPatch {
     /// # Errors
     /// [`SurfaceError::Parameter`] when a range is not ascending within [0, 1].
     pub fn part(&self, ranges: [[f64; 2]; 2]) -> Result<RationalPatch, SurfaceError> {
-        let mut part = self.clone();
-        for (axis, range) in ranges.into_iter().enumerate() {
-            let [low, high] = range;
-            if !(0.0 <= low && low < high && high <= 1.0) {
-                return Err(SurfaceError::Parameter { value: if low >= 0.0 { high } else { low } });
-            }
-            net::restrict(&mut part.points, self.degrees, axis, range);
-        }
-        Ok(part)
+        Ok(RationalPatch { points: net::part(&self.points, self.degrees, ranges)?, degrees: self.degrees })
     }
 
     /// The same patch written with degrees higher by these numbers.
@@ -74,11 +66,7 @@ impl RationalPatch {
     /// # Errors
     /// [`SurfaceError::Degree`] above 200.
     pub fn elevated(&self, by: [usize; 2]) -> Result<RationalPatch, SurfaceError> {
-        check_degrees([self.degrees[0].saturating_add(by[0]), self.degrees[1].saturating_add(by[1])])?;
-        let (mut points, mut degrees) = (self.points.clone(), self.degrees);
-        for axis in std::iter::repeat_n(0, by[0]).chain(std::iter::repeat_n(1, by[1])) {
-            (points, degrees) = net::elevated(&points, degrees, axis);
-        }
+        let (points, degrees) = net::elevated_by(&self.points, self.degrees, by)?;
         Ok(RationalPatch { points, degrees })
     }
 

@@ -89,6 +89,33 @@ const PLACES: [[f64; 3]; 7] = [
     [0.2, 0.2, 0.6],
 ];
 
+/// Distances of the places of triangles from the surface at the same parameters.
+pub(super) type Plain = [f64; PLACES.len()];
+
+/// [`Plain`] of many triangles.
+pub(super) fn plain_distances(
+    surface: &dyn Surface,
+    parameters: &[[[f64; 2]; 3]],
+    corners: &[[Vec3; 3]],
+) -> Vec<Plain> {
+    let at: Vec<[f64; 2]> = parameters.iter().flat_map(|own| PLACES.map(|weights| mixed(weights, own))).collect();
+    let mut points = vec![Vec3::ZERO; at.len()];
+    surface.points(&at, &mut points);
+    let (all, _) = points.as_chunks::<{ PLACES.len() }>();
+    let distances = |(points, corners): (&[Vec3; PLACES.len()], &[Vec3; 3])| {
+        std::array::from_fn(|k| (place(PLACES[k], corners) - points[k]).length())
+    };
+    all.iter().zip(corners).map(distances).collect()
+}
+
+fn mixed(weights: [f64; 3], parameters: &[[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>())
+}
+
+fn place(weights: [f64; 3], corners: &[Vec3; 3]) -> Vec3 {
+    weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2]
+}
+
 /// The largest distance found between a triangle and its part of the surface: of places of the triangle from points of
 /// the surface that Newton steps bring near. Those points cover the surface as the places cover the mesh, so it is the
 /// distance both ways.
@@ -98,18 +125,16 @@ pub(super) fn measure(
     surface: &dyn Surface,
     parameters: &[[f64; 2]; 3],
     corners: [Vec3; 3],
+    plain: &Plain,
     known: f64,
 ) -> f64 {
     let domain = surface.domain();
     let mut most = known;
-    for weights in PLACES {
-        let start = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>());
-        let place: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
-        let plain = (place - surface.point(start[0], start[1])).length();
-        if plain <= most {
+    for (weights, plain) in PLACES.into_iter().zip(plain) {
+        if *plain <= most {
             continue;
         }
-        let near = distance_from(surface, domain, place, start);
+        let near = distance_from(surface, domain, place(weights, &corners), mixed(weights, parameters));
         // NaN must not pass for small.
         if near.is_nan() {
             return near;

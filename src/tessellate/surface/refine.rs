@@ -56,8 +56,18 @@ impl<'a> Refinement<'a> {
     ) -> Refinement<'a> {
         let twins = Topology::new(&triangles).twins().to_vec();
         let mut new = Refinement { surface, table, nodes, positions, triangles, twins, ratios: Vec::new() };
-        new.ratios = (0..new.triangles.len()).map(|t| new.ratio(new.triangles[t])).collect();
+        new.ratios = new.ratios_of_all();
         new
+    }
+
+    fn ratios_of_all(&self) -> Vec<f64> {
+        if self.table.proven {
+            return self.triangles.iter().map(|&triangle| self.ratio(triangle)).collect();
+        }
+        let parameters: Vec<_> = self.triangles.iter().map(|&triangle| self.parameters(triangle)).collect();
+        let corners: Vec<_> = self.triangles.iter().map(|&triangle| self.corners(triangle)).collect();
+        let plain = check::plain_distances(self.surface, &parameters, &corners);
+        (0..plain.len()).map(|t| self.measured(&parameters[t], corners[t], &plain[t])).collect()
     }
 
     /// Mends until every triangle passes.
@@ -86,20 +96,30 @@ impl<'a> Refinement<'a> {
         Ok(())
     }
 
-    fn parameters(&self, triangle: [Local; 3]) -> [[f64; 2]; 3] {
+    pub(super) fn parameters(&self, triangle: [Local; 3]) -> [[f64; 2]; 3] {
         settled(triangle.map(|local| self.nodes[local as usize]))
     }
 
     fn ratio(&self, triangle: [Local; 3]) -> f64 {
         let parameters = self.parameters(triangle);
-        let ratio = if self.table.proven {
-            check::bound(self.table, self.surface, &parameters)
-        } else {
-            let corners = triangle.map(|local| self.positions[local as usize]);
-            let allowed = MEASURED_SHARE * self.table.tolerance(&parameters);
-            check::measure(self.surface, &parameters, corners, SURE * allowed) / allowed
-        };
+        if self.table.proven {
+            let ratio = check::bound(self.table, self.surface, &parameters);
+            return if ratio.is_nan() { f64::INFINITY } else { ratio };
+        }
+        let corners = self.corners(triangle);
+        let plain = check::plain_distances(self.surface, &[parameters], &[corners]);
+        self.measured(&parameters, corners, &plain[0])
+    }
+
+    /// The largest distance found over what is allowed.
+    fn measured(&self, parameters: &[[f64; 2]; 3], corners: [Vec3; 3], plain: &check::Plain) -> f64 {
+        let allowed = MEASURED_SHARE * self.table.tolerance(parameters);
+        let ratio = check::measure(self.surface, parameters, corners, plain, SURE * allowed) / allowed;
         if ratio.is_nan() { f64::INFINITY } else { ratio }
+    }
+
+    pub(super) fn corners(&self, triangle: [Local; 3]) -> [Vec3; 3] {
+        triangle.map(|local| self.positions[local as usize])
     }
 
     fn corner(&self, half_edge: u32) -> Local {
