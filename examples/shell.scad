@@ -13,10 +13,10 @@ function whorl(radius) = function(u, v) size(u) * [
   radius * (1 + 0.05 * cos(9 * v)) * sin(v) - 1.4,
 ];
 
-module tube(radius, from)
-  parametric(whorl(radius), u = [from, 360 * turns], v = [0, 360], tolerance = tolerance);
+module tube(radius, from, to)
+  parametric(whorl(radius), u = [from, to], v = [0, 360], tolerance = tolerance);
 
 rotate([180, 0, 0]) difference() {
-  tube(0.58, 0);
-  tube(0.58 * (1 - wall), 60);
+  tube(0.66, 0, 360 * turns);
+  tube(0.66 * (1 - wall), 60, 360 * turns + 5); // out of the mouth
 }

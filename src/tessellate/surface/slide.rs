@@ -4,17 +4,17 @@
 //! plane is no distance: S(p + d) with S_u d_u + S_v d_v equal to that part is nearer to L(p), off by no more than the part
 //! of D along the normal and half the second derivative by d twice. That is a bound from the mesh to the surface. It is one
 //! from the surface to the mesh as well if p -> p + d covers the whole domain, which it does when it is continuous and keeps
-//! the border (by Brouwer's theorem on the degree of maps). So d is scaled by a number that falls from 1 to 0 within a
-//! quarter of a cell of the border, and of cells where the tangent plane may be any; triangles that come so near are bounded
+//! the border (by Brouwer's theorem on the degree of maps). So d is scaled by a number that falls from 1 to 0 within the
+//! length of a step of the border, and of cells where the tangent plane may be any; triangles that come so near are bounded
 //! by the whole of D and the second derivative.
 
 use crate::math::Vec3;
 use crate::surface::Across;
 
 /// The ratio of D to the tolerance up to which steps are provided for; triangles beyond it fail.
-pub(super) const MOST: f64 = 8.0;
-/// The width of the border, over that of a cell; no step is longer.
-const BORDER: f64 = 0.25;
+pub(super) const MOST: f64 = 4.0;
+/// Longest steps, over the width of a cell: they lead no farther than to the next one.
+const LONGEST: f64 = 0.25;
 
 /// What of a cell's bends is across the surface, over the tolerance.
 #[derive(Clone, Copy)]
@@ -45,6 +45,8 @@ pub(super) struct Slides {
     domain: [[f64; 2]; 2],
     cells: [usize; 2],
     turned: Vec<Option<Turned>>,
+    /// The longest step along u and along v.
+    border: [f64; 2],
     /// Whether a triangle in the cell is far from the border whatever its place.
     inner: Vec<bool>,
     /// What steps for a ratio of 1 cost, from the cell itself or one beside it.
@@ -61,10 +63,11 @@ impl Slides {
     ) -> Slides {
         let widths = [0, 1].map(|axis: usize| (domain[axis][1] - domain[axis][0]) / cells[axis] as f64);
         for cell in &mut turned {
-            // Steps longer than the border is wide are none.
-            *cell = cell.filter(|t| (0..2).all(|axis| MOST * t.steps[axis] <= BORDER * widths[axis]));
+            *cell = cell.filter(|t| (0..2).all(|axis| MOST * t.steps[axis] <= LONGEST * widths[axis]));
         }
-        let mut slides = Slides { domain, cells, turned, inner: Vec::new(), costs: Vec::new() };
+        let longest = |axis: usize| turned.iter().flatten().map(|t| MOST * t.steps[axis]).fold(0.0, f64::max);
+        let border = [longest(0), longest(1)];
+        let mut slides = Slides { domain, cells, turned, border, inner: Vec::new(), costs: Vec::new() };
         for cell in 0..cells[0] * cells[1] {
             let (i, j) = (cell / cells[1], cell % cells[1]);
             let is_within = 0 < i && i + 1 < cells[0] && 0 < j && j + 1 < cells[1];
@@ -96,6 +99,11 @@ impl Slides {
         range(i, height).flat_map(move |i| columns.clone().map(move |j| i * width + j))
     }
 
+    /// Bounds across the surface of a cell whose lengths these are.
+    pub(super) fn bends_of(&self, cell: usize, lengths: [f64; 3]) -> [f64; 3] {
+        self.turned[cell].map_or(lengths, |turned| turned.bends(lengths))
+    }
+
     /// What steps cost around some cells, for a ratio of D to the tolerance.
     pub(super) fn cost(&self, cells: impl Iterator<Item = usize>, ratio: f64) -> f64 {
         ratio * ratio * cells.map(|cell| self.costs[cell]).fold(0.0, f64::max)
@@ -111,7 +119,7 @@ impl Slides {
         let wide = [0, 1].map(|axis: usize| {
             let [low, high] = self.domain[axis];
             let (cell, count) = ((high - low) / self.cells[axis] as f64, self.cells[axis]);
-            let [from, to] = [part[axis][0] - BORDER * cell, part[axis][1] + BORDER * cell];
+            let [from, to] = [part[axis][0] - self.border[axis], part[axis][1] + self.border[axis]];
             let index = |t: f64| (((t - low) / cell).max(0.0) as usize).min(count - 1);
             (from >= low && to <= high).then(|| [index(from), index(to)])
         });

@@ -1,7 +1,7 @@
 //! How a piece bends, cell by cell: what its density of vertices and the check of its triangles come from.
 
 use super::slide::{Slides, Turned};
-use super::{Guarantee, SurfaceOptions, TessellationError};
+use super::{Guarantee, Precision, SurfaceOptions, TessellationError};
 use crate::surface::{Bends, Jet, Side, Surface};
 
 /// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
@@ -35,15 +35,13 @@ impl Table {
             let [low, high] = domain[axis];
             if k == cells[axis] { high } else { low + (high - low) * k as f64 / cells[axis] as f64 }
         };
-        let bounds = match options.guarantee {
+        let part = |k: usize| {
+            let (i, j) = (k / cells[1], k % cells[1]);
+            surface.bends([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
+        };
+        let bounds: Option<Vec<Bends>> = match options.guarantee {
             Guarantee::Proven if domain == surface.domain() => surface.bends_table(cells),
-            Guarantee::Proven => {
-                let part = |k: usize| {
-                    let (i, j) = (k / cells[1], k % cells[1]);
-                    surface.bends([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
-                };
-                (0..cells[0] * cells[1]).map(part).collect::<Option<Vec<Bends>>>()
-            }
+            Guarantee::Proven => (0..cells[0] * cells[1]).map(part).collect(),
             Guarantee::Measured => None,
         };
         let needed = bounds.is_none() || options.angle.is_some();
@@ -56,7 +54,7 @@ impl Table {
             densities: Vec::new(),
             proven: bounds.is_some(),
         };
-        let mut turned: Vec<Option<Turned>> = Vec::with_capacity(cells[0] * cells[1]);
+        let (mut turned, mut turns): (Vec<Option<Turned>>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
         for cell in 0..cells[0] * cells[1] {
             let (i, j) = (cell / cells[1], cell % cells[1]);
             let middle = [0.5 * at(0, i) + 0.5 * at(0, i + 1), 0.5 * at(1, j) + 0.5 * at(1, j + 1)];
@@ -64,13 +62,8 @@ impl Table {
             if jet.is_some_and(|jet| !jet.point.is_finite()) {
                 return Err(TessellationError::NotFinite { surface: index, parameters: middle });
             }
-            let tolerance = match options.precision {
-                super::Precision::Distance(tolerance) => tolerance,
-                precision @ super::Precision::View(_) => [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)]
-                    .map(|(i, j)| precision.at(surface.point(at(0, i), at(1, j))))
-                    .into_iter()
-                    .fold(f64::INFINITY, f64::min),
-            };
+            let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
+            let tolerance = least_tolerance(surface, options, corners.map(|(i, j)| [at(0, i), at(1, j)]));
             let bend = match &bounds {
                 Some(bounds) => bounds[cell].lengths,
                 None => jet.as_ref().map_or([0.0; 3], measured_bend),
@@ -84,14 +77,17 @@ impl Table {
                 _ => [0.0; 2],
             };
             let across = bounds.as_ref().and_then(|bounds| bounds[cell].across);
-            let across = across.map(|across| Turned::new(&across, bend, tolerance));
-            let plain = table.density_of(across.as_ref().map_or(bend, |across| across.bends(bend)));
-            turned.push(across);
+            turned.push(across.map(|across| Turned::new(&across, bend, tolerance)));
             table.bends.push(bend);
             table.tolerances.push(tolerance);
-            table.densities.push([plain[0].max(turn[0]), plain[1].max(turn[1])]);
+            turns.push(turn);
         }
         table.slides = Slides::new(domain, cells, turned, &table.bends, &table.tolerances);
+        let density = |(cell, turn): (usize, [f64; 2])| {
+            let plain = table.density_of(table.slides.bends_of(cell, table.bends[cell]));
+            [0, 1].map(|axis: usize| plain[axis].max(turn[axis]))
+        };
+        table.densities = turns.into_iter().enumerate().map(density).collect();
         Ok(table)
     }
 
@@ -168,6 +164,17 @@ impl Table {
         let [[i, _], [j, _]] = self.met(&[middle; 3]);
         let along = [0, 1].map(|axis: usize| (to[axis] - from[axis]) * self.density(i, j, axis));
         along[0] * along[0] + along[1] * along[1]
+    }
+}
+
+/// What is allowed at the nearest of some places to a camera, or everywhere.
+fn least_tolerance(surface: &dyn Surface, options: &SurfaceOptions, places: [[f64; 2]; 4]) -> f64 {
+    match options.precision {
+        Precision::Distance(tolerance) => tolerance,
+        precision @ Precision::View(_) => {
+            let at = places.map(|[u, v]| precision.at(surface.point(u, v)));
+            at.into_iter().fold(f64::INFINITY, f64::min)
+        }
     }
 }
 
