@@ -102,7 +102,10 @@ fn volumes_are_those_of_openscad() {
 fn our_own_examples_are_closed() {
     for (name, components, genus) in OURS {
         let found = build(name).measures();
-        assert!(found.closed && found.genus == Some(genus) && found.components == components, "{name}: {found:?}");
+        assert!(
+            found.closed && found.genus == Some(genus) && found.components == components,
+            "{name}: {found:?}"
+        );
     }
 }
 

@@ -191,12 +191,18 @@ fn what_is_wrong_is_said() {
         ("sweep([[0,0,0],[0,0,1]], [[0,0],[1,0],[0,1]], scale = 0);", "scale is 0"),
         ("tube([[0,0,0],[0,0,1]], tolerance = -1);", "tolerance must be a positive number"),
         ("sphere(2, tolerance = 0);", "tolerance must be a positive number"),
-        ("linear_extrude(2, twist = 90, tolerance = \"a\") square(1);", "tolerance must be a positive number"),
+        (
+            "linear_extrude(2, twist = 90, tolerance = \"a\") square(1);",
+            "tolerance must be a positive number",
+        ),
         ("tube([[0,0,0],[1,0,0],[0,0,0]], kind = \"line\");", "the path turns back on itself"),
         ("parametric(3);", "parametric needs a function"),
         ("parametric(function(u, v) [u, v]);", "must give three numbers, not [formula, formula]"),
         ("parametric(function(u, v) [u, v, str(u)]);", "must give three numbers"),
-        ("parametric(function(u, v) [u, v, 0], u = [1, 0]);", "u must be a range [from, to] of finite numbers"),
+        (
+            "parametric(function(u, v) [u, v, 0], u = [1, 0]);",
+            "u must be a range [from, to] of finite numbers",
+        ),
     ];
     for (text, expected) in cases {
         let (_, complaints) = evaluated(text);
@@ -268,7 +274,8 @@ fn curved_primitives_keep_their_tolerance() {
             let ring = solid(&format!("rotate_extrude(angle = 100, {how}) translate([1, 0]) square(1);"));
             let off = largest(&ring, |p| {
                 let (across, inside) = (p.truncate().length(), 0.01 < p.z && p.z < 0.99);
-                let at_ends = p.y.abs() < 1e-9 || (p.x * 100_f64.to_radians().sin() - p.y * 100_f64.to_radians().cos()).abs() < 1e-9;
+                let at_ends = p.y.abs() < 1e-9
+                    || (p.x * 100_f64.to_radians().sin() - p.y * 100_f64.to_radians().cos()).abs() < 1e-9;
                 if inside && !at_ends { (2.0 - across).min((1.0 - across).abs()) } else { 0.0 }
             });
             assert!(off <= tolerance * (1.0 + 1e-9), "{how}: {off}");

@@ -477,7 +477,8 @@ fn random_patches_stay_within_their_tolerance() {
             let options = SurfaceOptions { guarantee, ..SurfaceOptions::within(tolerance * scale) };
             let mut made = patches(std::slice::from_ref(&scaled), &options).unwrap();
             made.mesh.positions.iter_mut().for_each(|p| *p /= scale);
-            let [bound, measured] = [made.error.bound.unwrap_or(f64::NAN), made.error.measured].map(|e| e / scale);
+            let [bound, measured] =
+                [made.error.bound.unwrap_or(f64::NAN), made.error.measured].map(|e| e / scale);
             let found = distances(&patch, &made, tolerance);
             let says = format!("{index} {guarantee:?}: {found:?} {measured} {bound} of {tolerance}");
             // What is proven holds everywhere, what is measured where it was: between, it may be a little more.
@@ -485,18 +486,27 @@ fn random_patches_stay_within_their_tolerance() {
             assert!(measured <= tolerance && found.iter().all(|&d| d <= room * tolerance), "{says}");
             match guarantee {
                 Guarantee::Proven => {
-                    assert!(found.iter().all(|&d| d <= bound) && measured <= bound && bound <= tolerance, "{says}");
+                    assert!(
+                        found.iter().all(|&d| d <= bound) && measured <= bound && bound <= tolerance,
+                        "{says}"
+                    );
                 }
                 Guarantee::Measured => assert_eq!(made.error.bound, None),
             }
             let defects = Defects::of(&made.mesh);
-            assert_eq!((defects.non_manifold_edges, defects.repeated_corners, defects.duplicate_triangles), (0, 0, 0));
+            assert_eq!(
+                (defects.non_manifold_edges, defects.repeated_corners, defects.duplicate_triangles),
+                (0, 0, 0)
+            );
             assert_eq!(defects.misoriented_edges, 0, "{says}");
             triangles[k] += made.mesh.triangles.len();
             worst[k] = found.iter().fold(worst[k], |worst, d| worst.max(d / tolerance));
         }
     }
-    println!("triangles proven {}, measured {}; worst distances over tolerances {worst:?}", triangles[0], triangles[1]);
+    println!(
+        "triangles proven {}, measured {}; worst distances over tolerances {worst:?}",
+        triangles[0], triangles[1]
+    );
 }
 
 #[test]
@@ -601,7 +611,11 @@ fn areas_and_volumes_converge_by_the_tolerance() {
     let cases: [(Classic, f64, f64); 3] = [
         (Classic::Sphere { radius: 1.0 }, 4.0 * PI, 4.0 / 3.0 * PI),
         (Classic::Torus { major: 2.0, minor: 1.0 }, 8.0 * PI * PI, 4.0 * PI * PI),
-        (Classic::Ellipsoid { radii: [1.0, 2.0, 3.0] }, area(&Classic::Ellipsoid { radii: [1.0, 2.0, 3.0] }, 1e-9), 8.0 * PI),
+        (
+            Classic::Ellipsoid { radii: [1.0, 2.0, 3.0] },
+            area(&Classic::Ellipsoid { radii: [1.0, 2.0, 3.0] }, 1e-9),
+            8.0 * PI,
+        ),
     ];
     for (classic, area, volume) in cases {
         let off = [0.04, 0.005, 0.000_625].map(|tolerance| {
@@ -663,7 +677,8 @@ fn second_derivatives_across_surfaces_are_bounded() {
     let rational = RationalPatch::new([3, 3], polynomial.points(), &weights).unwrap();
     let [u, v, _] = ogee::sdf::Expr::axes();
     let formula =
-        Formula::new([u.clone() * 3.0 + v.clone().square(), v.clone(), (u * v).sin()], [[0.0, 1.0]; 2]).unwrap();
+        Formula::new([u.clone() * 3.0 + v.clone().square(), v.clone(), (u * v).sin()], [[0.0, 1.0]; 2])
+            .unwrap();
     for surface in [&polynomial as &dyn Surface, &rational, &formula] {
         let mut known = 0;
         for _ in 0..200 {
@@ -674,13 +689,31 @@ fn second_derivatives_across_surfaces_are_bounded() {
             for _ in 0..20 {
                 let jet = surface.jet(a + 0.1 * numbers.unit(), c + 0.1 * numbers.unit());
                 let normal = jet.normal().unwrap();
-                assert!((normal - across.normal).length() <= across.spread, "{across:?} {normal}");
-                for (second, bound) in [jet.duu, jet.duv, jet.dvv].into_iter().zip(across.along) {
+                assert!(
+                    (normal - across.normal.direction).length() <= across.normal.spread,
+                    "{across:?} {normal}"
+                );
+                let seconds = [jet.duu, jet.duv, jet.dvv];
+                for (cone, first) in across.tangents.iter().zip([jet.du, jet.dv]) {
+                    assert!(
+                        (first.normalize() - cone.direction).length() <= cone.spread,
+                        "{across:?} {first}"
+                    );
+                    for (second, bound) in seconds.iter().zip(cone.bounds) {
+                        let beside = *second - second.dot(cone.direction) * cone.direction;
+                        assert!(beside.length() <= bound + 1e-5, "{across:?} {second}");
+                    }
+                }
+                for (second, bound) in seconds.into_iter().zip(across.normal.bounds) {
                     // Second derivatives of formulas come from differences.
-                    assert!(second.dot(across.normal).abs() <= bound + 1e-5, "{across:?} {second}");
+                    assert!(second.dot(across.normal.direction).abs() <= bound + 1e-5, "{across:?} {second}");
                 }
                 let cross = jet.du.cross(jet.dv).length();
-                assert!(across.speeds[0] <= cross / jet.dv.length() && across.speeds[1] <= cross / jet.du.length());
+                assert!(across.sine <= cross / (jet.du.length() * jet.dv.length()));
+                assert!(
+                    across.speeds[0] <= cross / jet.dv.length()
+                        && across.speeds[1] <= cross / jet.du.length()
+                );
             }
         }
         assert!(known > 100, "{known}");

@@ -9,8 +9,8 @@ mod build;
 mod flat;
 mod frame;
 mod leaf;
-mod plan;
 mod parametric;
+mod plan;
 mod print;
 mod solve;
 mod surface;
@@ -19,8 +19,8 @@ pub use bounds::bounds;
 pub use build::{
     BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, build, build_with_progress,
 };
-pub use print::print;
 pub use parametric::Parametric;
+pub use print::print;
 pub use surface::{Explicit, SurfaceBody};
 
 use crate::boolean::Op;

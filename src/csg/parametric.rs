@@ -74,7 +74,10 @@ impl Parametric {
             let ranges = [0, 1, 2].map(|axis: usize| tapes[axis].range(part).map(|range| range.interval));
             let low = |axis: usize| ranges[axis].map_or(-EVERYTHING, |range| range.lo.max(-EVERYTHING));
             let high = |axis: usize| ranges[axis].map_or(EVERYTHING, |range| range.hi.min(EVERYTHING));
-            let held = Aabb { min: Vec3::from_array([0, 1, 2].map(low)), max: Vec3::from_array([0, 1, 2].map(high)) };
+            let held = Aabb {
+                min: Vec3::from_array([0, 1, 2].map(low)),
+                max: Vec3::from_array([0, 1, 2].map(high)),
+            };
             bounds = bounds.union(held);
         }
         bounds

@@ -7,8 +7,7 @@ use crate::sdf::{Binary, Expr};
 use std::f64::consts::{LN_10, PI};
 
 /// Why a formula decides nothing.
-pub(super) const UNDECIDED: &str =
-    "this depends on the parameters of the surface, which have no value here; min, max, abs and sign do instead of conditions";
+pub(super) const UNDECIDED: &str = "this depends on the parameters of the surface, which have no value here; min, max, abs and sign do instead of conditions";
 
 /// A number or a formula as a formula.
 pub(super) fn of(value: &Value) -> Option<Expr> {
@@ -51,7 +50,9 @@ pub(super) fn is_in(list: &List) -> bool {
     list.numbers().is_none()
         && list.iter().any(|value| match &value {
             Value::Formula(_) => true,
-            Value::List(inner) => inner.numbers().is_none() && inner.iter().any(|v| matches!(v, Value::Formula(_))),
+            Value::List(inner) => {
+                inner.numbers().is_none() && inner.iter().any(|v| matches!(v, Value::Formula(_)))
+            }
             _ => false,
         })
 }
@@ -89,7 +90,11 @@ fn dot(a: &List, b: &List) -> Outcome {
 fn combination(weights: &List, rows: &[List]) -> Outcome {
     let width = rows.first().map_or(0, List::len);
     if weights.len() != rows.len() || rows.iter().any(|row| row.len() != width) {
-        return undefined(format!("{} numbers times a matrix of {} rows is undefined", weights.len(), rows.len()));
+        return undefined(format!(
+            "{} numbers times a matrix of {} rows is undefined",
+            weights.len(),
+            rows.len()
+        ));
     }
     let column = |k: usize| rows.iter().filter_map(|row| row.get(k)).collect::<Value>();
     let columns = (0..width).map(|k| match column(k) {

@@ -80,7 +80,8 @@ impl Frames {
 
     /// How much farther than itself something carried reaches from the path.
     pub(super) fn stretch(&self) -> f64 {
-        let steepest = self.legs.iter().flat_map(|leg| leg.lean).map(Vec2::length_squared).fold(0.0, f64::max);
+        let steepest =
+            self.legs.iter().flat_map(|leg| leg.lean).map(Vec2::length_squared).fold(0.0, f64::max);
         (1.0 + steepest).sqrt()
     }
 
@@ -101,7 +102,8 @@ impl Frames {
                 let share = k as f64 / STATIONS_A_PIECE as f64;
                 let t = knots[piece] + (knots[piece + 1] - knots[piece]) * share;
                 let (point, tangent) = self.direction(piece, share);
-                let tangent = tangent.ok_or(SurfaceError::Curve(crate::curve::CurveError::Parameter { value: t }))?;
+                let tangent =
+                    tangent.ok_or(SurfaceError::Curve(crate::curve::CurveError::Parameter { value: t }))?;
                 let frame = match &current {
                     Some(before) if begins && k == 0 => turned(before, point, tangent),
                     Some(before) => before.carried(point, tangent),
@@ -140,7 +142,8 @@ impl Frames {
             if next == 0 && !self.has_corner_at_start() {
                 break;
             }
-            let start = self.stations.iter().find(|station| station.leg == next).map_or(ends[leg], |s| s.frame);
+            let start =
+                self.stations.iter().find(|station| station.leg == next).map_or(ends[leg], |s| s.frame);
             let plane = ends[leg].tangent + start.tangent;
             let least = 2.0 * SHARPEST * SHARPEST;
             if ends[leg].tangent.dot(plane) < least {

@@ -41,7 +41,7 @@ mod sweep;
 
 pub use area::area;
 pub use b_spline::from_b_spline;
-pub use bends::{Across, Bends};
+pub use bends::{Across, Bends, Cone};
 pub use classic::Classic;
 pub use formula::Formula;
 pub use jet::{Curvature, Jet};

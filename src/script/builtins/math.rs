@@ -12,26 +12,40 @@ use crate::sdf::{Binary, Expr};
 pub(super) const TABLE: &[Builtin] = &[
     function_row("abs", &["x"], "The number without its sign.", |s, a| of_number(s, a, f64::abs, Expr::abs)),
     function_row("sign", &["x"], "-1, 0 or 1.", |s, a| of_number(s, a, sign, formula::sign)),
-    function_row("sin", &["degrees"], "Sine of an angle in degrees.", |s, a| of_number(s, a, degrees::sin, formula::sin)),
-    function_row("cos", &["degrees"], "Cosine of an angle in degrees.", |s, a| of_number(s, a, degrees::cos, formula::cos)),
-    function_row("tan", &["degrees"], "Tangent of an angle in degrees.", |s, a| of_number(s, a, degrees::tan, formula::tan)),
-    function_row("asin", &["x"], "Angle in degrees whose sine is x.", |s, a| of_number(s, a, degrees::asin, formula::asin)),
-    function_row("acos", &["x"], "Angle in degrees whose cosine is x.", |s, a| of_number(s, a, degrees::acos, formula::acos)),
-    function_row("atan", &["x"], "Angle in degrees whose tangent is x.", |s, a| of_number(s, a, degrees::atan, formula::atan)),
+    function_row("sin", &["degrees"], "Sine of an angle in degrees.", |s, a| {
+        of_number(s, a, degrees::sin, formula::sin)
+    }),
+    function_row("cos", &["degrees"], "Cosine of an angle in degrees.", |s, a| {
+        of_number(s, a, degrees::cos, formula::cos)
+    }),
+    function_row("tan", &["degrees"], "Tangent of an angle in degrees.", |s, a| {
+        of_number(s, a, degrees::tan, formula::tan)
+    }),
+    function_row("asin", &["x"], "Angle in degrees whose sine is x.", |s, a| {
+        of_number(s, a, degrees::asin, formula::asin)
+    }),
+    function_row("acos", &["x"], "Angle in degrees whose cosine is x.", |s, a| {
+        of_number(s, a, degrees::acos, formula::acos)
+    }),
+    function_row("atan", &["x"], "Angle in degrees whose tangent is x.", |s, a| {
+        of_number(s, a, degrees::atan, formula::atan)
+    }),
     function_row("atan2", &["y", "x"], "Angle of the vector (x, y) in degrees.", |s, a| {
         of_two(s, a, degrees::atan2, formula::atan2)
     }),
-    function_row("floor", &["x"], "Largest whole number not above x.", |s, a| of_number(s, a, f64::floor, Expr::floor)),
+    function_row("floor", &["x"], "Largest whole number not above x.", |s, a| {
+        of_number(s, a, f64::floor, Expr::floor)
+    }),
     function_row("round", &["x"], "Nearest whole number, halves away from 0.", |s, a| {
         of_number(s, a, f64::round, Expr::round)
     }),
-    function_row("ceil", &["x"], "Smallest whole number not below x.", |s, a| of_number(s, a, f64::ceil, Expr::ceil)),
+    function_row("ceil", &["x"], "Smallest whole number not below x.", |s, a| {
+        of_number(s, a, f64::ceil, Expr::ceil)
+    }),
     function_row("ln", &["x"], "Natural logarithm.", |s, a| of_number(s, a, math::ln, Expr::ln)),
     function_row("log", &["x"], "Logarithm to base 10.", |s, a| of_number(s, a, math::log10, formula::log10)),
     function_row("exp", &["x"], "e to the power of x.", |s, a| of_number(s, a, math::exp, Expr::exp)),
-    function_row("pow", &["x", "y"], "x to the power of y.", |s, a| {
-        of_two(s, a, math::pow, |x, y| x.pow(y))
-    }),
+    function_row("pow", &["x", "y"], "x to the power of y.", |s, a| of_two(s, a, math::pow, |x, y| x.pow(y))),
     function_row("sqrt", &["x"], "Square root.", |s, a| of_number(s, a, f64::sqrt, Expr::sqrt)),
     function_row("max", &["values"], "Largest of its arguments, or of one list.", |_, a| {
         extreme(a, |x, y| x > y, Binary::Max)

@@ -272,12 +272,7 @@ fn fan(mesh: &mut Mesh, boundary: &[u32], middle: Vec3) {
 }
 
 /// Flips the parts with negative volume; a part is named by one of its triangles. Those with caps must hold something.
-fn turn_outward(
-    mesh: &mut Mesh,
-    part_of: &[usize],
-    has_caps: &[bool],
-    least: f64,
-) -> Result<(), CloseError> {
+fn turn_outward(mesh: &mut Mesh, part_of: &[usize], has_caps: &[bool], least: f64) -> Result<(), CloseError> {
     // Six times the volumes, twice the areas.
     let (mut volumes, mut areas) = (vec![0.0; part_of.len()], vec![0.0; part_of.len()]);
     for (t, &part) in part_of.iter().enumerate() {

@@ -16,8 +16,8 @@ pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]
         [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     };
     let part = [range(0), range(1)];
-    let across = table.bend_across(parameters, part);
-    let rough = across.map_or(whole, |bends| bound_by(bends, parameters)) + table.cost(parameters, whole);
+    let (free, left) = table.bend_left(parameters, part);
+    let rough = left.map_or(whole, |bends| bound_by(bends, parameters)) + table.cost(parameters, whole);
     if rough <= 1.0 {
         return rough;
     }
@@ -33,8 +33,8 @@ pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]
     let tolerance = table.tolerance(parameters);
     let lengths = bends.lengths.map(|length| length / tolerance);
     let whole = whole.min(bound_by(lengths, parameters));
-    let tight = match bends.across.filter(|_| across.is_some()) {
-        Some(across) => bound_by(Turned::new(&across, lengths, tolerance).bends(lengths), parameters),
+    let tight = match bends.across.filter(|_| left.is_some()) {
+        Some(across) => bound_by(Turned::new(&across, tolerance).bends(free, lengths), parameters),
         None => whole,
     };
     rough.min(tight + table.cost(parameters, whole))
@@ -98,7 +98,8 @@ pub(super) fn plain_distances(
     parameters: &[[[f64; 2]; 3]],
     corners: &[[Vec3; 3]],
 ) -> Vec<Plain> {
-    let at: Vec<[f64; 2]> = parameters.iter().flat_map(|own| PLACES.map(|weights| mixed(weights, own))).collect();
+    let at: Vec<[f64; 2]> =
+        parameters.iter().flat_map(|own| PLACES.map(|weights| mixed(weights, own))).collect();
     let mut points = vec![Vec3::ZERO; at.len()];
     surface.points(&at, &mut points);
     let (all, _) = points.as_chunks::<{ PLACES.len() }>();

@@ -59,7 +59,8 @@ pub struct View {
 /// What the check of a triangle rests on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guarantee {
-    /// Bounds of second derivatives where the surface brings them ([`Surface::second_bounds`]), else as `Measured`.
+    /// Bounds of second derivatives where the surface brings them ([`Surface::second_bounds`], and fewer triangles with
+    /// [`Surface::bends`]), else as `Measured`.
     #[default]
     Proven,
     /// Distances at seven points of every triangle. Fewer triangles where a surface is unevenly parametrised, such as

@@ -141,9 +141,11 @@ fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> 
         made.parameters.push(parameters);
         corners.push(refinement.corners(triangle));
     }
-    let plain = check::plain_distances(surface, &made.parameters, &corners);
-    made.measured = (0..plain.len()).fold(0.0, |known, t| {
-        check::measure(surface, &made.parameters[t], corners[t], &plain[t], known)
+    made.measured = refinement.known_distance().unwrap_or_else(|| {
+        let plain = check::plain_distances(surface, &made.parameters, &corners);
+        let beyond =
+            |known: f64, t: usize| check::measure(surface, &made.parameters[t], corners[t], &plain[t], known);
+        (0..plain.len()).fold(0.0, beyond)
     });
     made
 }

@@ -118,6 +118,13 @@ impl<'a> Refinement<'a> {
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 
+    /// The largest distance, where measured ratios tell it: small ones are not exact, and none are of different tolerances.
+    pub(super) fn known_distance(&self) -> Option<f64> {
+        let most = self.ratios.iter().copied().fold(0.0, f64::max);
+        let tolerance = self.table.same_tolerance().filter(|_| !self.table.proven && most > SURE)?;
+        Some(most * MEASURED_SHARE * tolerance)
+    }
+
     pub(super) fn corners(&self, triangle: [Local; 3]) -> [Vec3; 3] {
         triangle.map(|local| self.positions[local as usize])
     }

@@ -1,6 +1,6 @@
 //! How a piece bends, cell by cell: what its density of vertices and the check of its triangles come from.
 
-use super::slide::{Slides, Turned};
+use super::slide::{Free, Slides, Turned};
 use super::{Guarantee, Precision, SurfaceOptions, TessellationError};
 use crate::surface::{Bends, Jet, Side, Surface};
 
@@ -77,7 +77,7 @@ impl Table {
                 _ => [0.0; 2],
             };
             let across = bounds.as_ref().and_then(|bounds| bounds[cell].across);
-            turned.push(across.map(|across| Turned::new(&across, bend, tolerance)));
+            turned.push(across.map(|across| Turned::new(&across, tolerance)));
             table.bends.push(bend);
             table.tolerances.push(tolerance);
             turns.push(turn);
@@ -136,13 +136,17 @@ impl Table {
         })
     }
 
-    /// The largest bends across the surface around a triangle, where only these count.
-    pub(super) fn bend_across(&self, parameters: &[[f64; 2]; 3], part: [[f64; 2]; 2]) -> Option<[f64; 3]> {
-        let is_inside = self.slides.is_inside(part, self.met(parameters));
-        is_inside.then(|| self.slides.bends(self.met_cells(parameters), &self.bends)).flatten()
+    /// The largest bends around a triangle that steps do not make up for, and which steps these are.
+    pub(super) fn bend_left(
+        &self,
+        parameters: &[[f64; 2]; 3],
+        part: [[f64; 2]; 2],
+    ) -> (Free, Option<[f64; 3]>) {
+        let free = self.slides.free(part, self.met(parameters));
+        (free, self.slides.bends(free, self.met_cells(parameters), &self.bends))
     }
 
-    /// What it costs that only these count, over the tolerance.
+    /// What steps cost, over the tolerance.
     pub(super) fn cost(&self, parameters: &[[f64; 2]; 3], ratio: f64) -> f64 {
         self.slides.cost(self.met_cells(parameters), ratio)
     }
@@ -150,6 +154,12 @@ impl Table {
     /// The least tolerance around a triangle.
     pub(super) fn tolerance(&self, parameters: &[[f64; 2]; 3]) -> f64 {
         self.met_cells(parameters).map(|cell| self.tolerances[cell]).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The tolerance, where it is the same everywhere.
+    pub(super) fn same_tolerance(&self) -> Option<f64> {
+        let first = self.tolerances[0];
+        self.tolerances.iter().all(|&tolerance| tolerance == first).then_some(first)
     }
 
     /// Segments that a length of 1 along an axis needs in a cell.
