@@ -272,10 +272,10 @@ fn curved_primitives_keep_their_tolerance() {
             let disc = solid(&format!("linear_extrude(1) circle(d = 4, {how});"));
             assert!(4.0 * PI - disc.volume() <= 4.0 * PI * tolerance, "{how}: {}", disc.volume());
             let ring = solid(&format!("rotate_extrude(angle = 100, {how}) translate([1, 0]) square(1);"));
+            let (end_sine, end_cosine) = ogee::math::sin_cos_degrees(100.0);
             let off = largest(&ring, |p| {
                 let (across, inside) = (p.truncate().length(), 0.01 < p.z && p.z < 0.99);
-                let at_ends = p.y.abs() < 1e-9
-                    || (p.x * 100_f64.to_radians().sin() - p.y * 100_f64.to_radians().cos()).abs() < 1e-9;
+                let at_ends = p.y.abs() < 1e-9 || (p.x * end_sine - p.y * end_cosine).abs() < 1e-9;
                 if inside && !at_ends { (2.0 - across).min((1.0 - across).abs()) } else { 0.0 }
             });
             assert!(off <= tolerance * (1.0 + 1e-9), "{how}: {off}");
@@ -285,7 +285,7 @@ fn curved_primitives_keep_their_tolerance() {
                 if !(0.01..3.99).contains(&p.z) {
                     return 0.0;
                 }
-                let (sine, cosine) = (120_f64.to_radians() * p.z / 4.0).sin_cos();
+                let (sine, cosine) = ogee::math::sin_cos(120_f64.to_radians() * p.z / 4.0);
                 let (x, y) = (p.x * cosine - p.y * sine, p.x * sine + p.y * cosine);
                 (1.0 - x.abs().max(y.abs())).abs()
             });

@@ -184,7 +184,8 @@ mod tests {
 
     #[test]
     fn formulas_have_the_values_of_the_functions() {
-        let pairs: [(fn(&Expr) -> Expr, fn(f64) -> f64); 7] = [
+        type Pair = (fn(&Expr) -> Expr, fn(f64) -> f64);
+        let pairs: [Pair; 7] = [
             (sin, exact::sin),
             (cos, exact::cos),
             (tan, exact::tan),

@@ -136,17 +136,15 @@ impl Frames {
 
     /// Leans both sides of every corner toward the plane between them.
     fn lean(&mut self, ends: &[Frame]) -> Result<(), SurfaceError> {
-        let count = self.legs.len();
-        for leg in 0..count {
-            let next = (leg + 1) % count;
+        for (leg, end) in ends.iter().enumerate() {
+            let next = (leg + 1) % ends.len();
             if next == 0 && !self.has_corner_at_start() {
                 break;
             }
-            let start =
-                self.stations.iter().find(|station| station.leg == next).map_or(ends[leg], |s| s.frame);
-            let plane = ends[leg].tangent + start.tangent;
+            let start = self.stations.iter().find(|station| station.leg == next).map_or(*end, |s| s.frame);
+            let plane = end.tangent + start.tangent;
             let least = 2.0 * SHARPEST * SHARPEST;
-            if ends[leg].tangent.dot(plane) < least {
+            if end.tangent.dot(plane) < least {
                 return Err(SurfaceError::Reversal { parameter: self.legs[leg].range[1] });
             }
             let toward = |frame: &Frame, turn: f64| {
@@ -155,7 +153,7 @@ impl Frames {
             };
             let [low, high] = self.path.domain();
             let turn = self.twist * (self.legs[leg].range[1] - low) / (high - low);
-            self.legs[leg].lean[1] = toward(&ends[leg], turn);
+            self.legs[leg].lean[1] = toward(end, turn);
             // At the start of a closed path nothing has turned yet.
             self.legs[next].lean[0] = toward(&start, if next == 0 { 0.0 } else { turn });
         }

@@ -49,15 +49,44 @@ pub(super) fn scattered(patch: &Patch, parameters: &[[f64; 2]], out: &mut [Vec3]
     };
     let coefficients = Powers::new(&cubic);
     for (parameters, out) in parameters.chunks(LANES).zip(out.chunks_mut(LANES)) {
-        let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
-        for (lane, at) in parameters.iter().enumerate() {
-            [u[lane], v[lane]] = *at;
-        }
-        let point = coefficients.block(&u, &v);
+        let [u, v] = lanes_of(parameters);
+        let point = coefficients.points(&u, &v);
         for (lane, place) in out.iter_mut().enumerate() {
-            *place = Vec3::new(point[0][lane], point[1][lane], point[2][lane]);
+            *place = vector(&point, lane);
         }
     }
+}
+
+/// Points and derivatives by u and by v at parameters in no order.
+pub(super) fn scattered_tangents(patch: &Patch, parameters: &[[f64; 2]], out: &mut [[Vec3; 3]]) {
+    let Some(cubic) = as_cubic(patch).filter(|_| parameters.len() >= LANES) else {
+        for (place, &[u, v]) in out.iter_mut().zip(parameters) {
+            let jet = patch.jet(u, v);
+            *place = [jet.point, jet.du, jet.dv];
+        }
+        return;
+    };
+    let coefficients = Powers::new(&cubic);
+    for (parameters, out) in parameters.chunks(LANES).zip(out.chunks_mut(LANES)) {
+        let [u, v] = lanes_of(parameters);
+        let [point, du, dv] = coefficients.tangents(&u, &v);
+        for (lane, place) in out.iter_mut().enumerate() {
+            *place = [vector(&point, lane), vector(&du, lane), vector(&dv, lane)];
+        }
+    }
+}
+
+/// Parameters side by side, zeros after the last.
+fn lanes_of(parameters: &[[f64; 2]]) -> [[f64; LANES]; 2] {
+    let mut lanes = [[0.0; LANES]; 2];
+    for (lane, at) in parameters.iter().enumerate() {
+        (lanes[0][lane], lanes[1][lane]) = (at[0], at[1]);
+    }
+    lanes
+}
+
+fn vector(components: &[[f64; LANES]; 3], lane: usize) -> Vec3 {
+    Vec3::new(components[0][lane], components[1][lane], components[2][lane])
 }
 
 /// A bicubic patch in powers of its parameters: `[axis][power of u][power of v]`.
@@ -78,7 +107,7 @@ impl Powers {
     }
 
     #[inline]
-    fn block(&self, u: &[f64; LANES], v: &[f64; LANES]) -> [[f64; LANES]; 3] {
+    fn points(&self, u: &[f64; LANES], v: &[f64; LANES]) -> [[f64; LANES]; 3] {
         let mut point = [[0.0; LANES]; 3];
         for (axis, point) in point.iter_mut().enumerate() {
             let c = &self.0[axis];
@@ -89,6 +118,24 @@ impl Powers {
             }
         }
         point
+    }
+
+    #[inline]
+    fn tangents(&self, u: &[f64; LANES], v: &[f64; LANES]) -> [[[f64; LANES]; 3]; 3] {
+        let [mut point, mut du, mut dv] = [[[0.0; LANES]; 3]; 3];
+        for axis in 0..3 {
+            let c = &self.0[axis];
+            for lane in 0..LANES {
+                let (u, v) = (u[lane], v[lane]);
+                let row = |i: usize| c[i][0] + v * (c[i][1] + v * (c[i][2] + v * c[i][3]));
+                let slope = |i: usize| c[i][1] + v * (2.0 * c[i][2] + v * (3.0 * c[i][3]));
+                let rows = [row(0), row(1), row(2), row(3)];
+                point[axis][lane] = rows[0] + u * (rows[1] + u * (rows[2] + u * rows[3]));
+                du[axis][lane] = rows[1] + u * (2.0 * rows[2] + u * (3.0 * rows[3]));
+                dv[axis][lane] = slope(0) + u * (slope(1) + u * (slope(2) + u * slope(3)));
+            }
+        }
+        [point, du, dv]
     }
 }
 

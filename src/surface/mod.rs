@@ -100,6 +100,18 @@ pub trait Surface: Sync {
         }
     }
 
+    /// The points at many parameters with the derivatives by u and by v, within rounding of [`Surface::jet`].
+    ///
+    /// # Panics
+    /// When there is not a place for each.
+    fn tangents(&self, parameters: &[[f64; 2]], out: &mut [[Vec3; 3]]) {
+        assert_eq!(parameters.len(), out.len(), "a place for each point");
+        for (place, &[u, v]) in out.iter_mut().zip(parameters) {
+            let jet = self.jet(u, v);
+            *place = [jet.point, jet.du, jet.dv];
+        }
+    }
+
     /// The point and its first and second derivatives; by default from differences, good to about 1e-9 and 1e-5 of the
     /// size of the surface over that of its domain.
     fn jet(&self, u: f64, v: f64) -> Jet {

@@ -231,6 +231,11 @@ impl Surface for Patch {
         grid::scattered(self, parameters, out);
     }
 
+    fn tangents(&self, parameters: &[[f64; 2]], out: &mut [[Vec3; 3]]) {
+        assert_eq!(parameters.len(), out.len(), "a place for each point");
+        grid::scattered_tangents(self, parameters, out);
+    }
+
     fn jet(&self, u: f64, v: f64) -> Jet {
         let [point, du, dv, duu, duv, dvv] = net::jet(&self.points, self.degrees, u, v);
         Jet { point, du, dv, duu, duv, dvv }

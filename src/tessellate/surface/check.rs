@@ -89,24 +89,51 @@ const PLACES: [[f64; 3]; 7] = [
     [0.2, 0.2, 0.6],
 ];
 
-/// Distances of the places of triangles from the surface at the same parameters.
-pub(super) type Plain = [f64; PLACES.len()];
+/// Distances of the places of a triangle from points of the surface.
+pub(super) type Distances = [f64; PLACES.len()];
 
-/// [`Plain`] of many triangles.
-pub(super) fn plain_distances(
+/// Distances of the places of many triangles: from the surface at the same parameters, and where these are above `enough`
+/// for the triangle, from the points that a step along the surface leads to when they are nearer.
+pub(super) fn distances(
     surface: &dyn Surface,
     parameters: &[[[f64; 2]; 3]],
     corners: &[[Vec3; 3]],
-) -> Vec<Plain> {
+    enough: impl Fn(usize) -> f64,
+) -> Vec<Distances> {
+    const COUNT: usize = PLACES.len();
     let at: Vec<[f64; 2]> =
         parameters.iter().flat_map(|own| PLACES.map(|weights| mixed(weights, own))).collect();
+    let place = |k: usize| self::place(PLACES[k % COUNT], &corners[k / COUNT]);
     let mut points = vec![Vec3::ZERO; at.len()];
     surface.points(&at, &mut points);
-    let (all, _) = points.as_chunks::<{ PLACES.len() }>();
-    let distances = |(points, corners): (&[Vec3; PLACES.len()], &[Vec3; 3])| {
-        std::array::from_fn(|k| (place(PLACES[k], corners) - points[k]).length())
-    };
-    all.iter().zip(corners).map(distances).collect()
+    let mut all: Vec<f64> = (0..at.len()).map(|k| (place(k) - points[k]).length()).collect();
+    let far: Vec<usize> = (0..at.len()).filter(|&k| all[k] > enough(k / COUNT)).collect();
+    let from: Vec<[f64; 2]> = far.iter().map(|&k| at[k]).collect();
+    let mut tangents = vec![[Vec3::ZERO; 3]; far.len()];
+    surface.tangents(&from, &mut tangents);
+    let domain = surface.domain();
+    let steps = far.iter().zip(&tangents).map(|(&k, tangents)| step(domain, place(k), at[k], tangents));
+    let to: Vec<[f64; 2]> = steps.collect();
+    let nearer = &mut points[..far.len()];
+    surface.points(&to, nearer);
+    for (&k, point) in far.iter().zip(nearer) {
+        all[k] = all[k].min((place(k) - *point).length());
+    }
+    all.as_chunks::<COUNT>().0.to_vec()
+}
+
+/// Parameters nearer to a place by one Gauss-Newton step, within the domain; the same where there is none.
+fn step(domain: [[f64; 2]; 2], place: Vec3, at: [f64; 2], &[point, du, dv]: &[Vec3; 3]) -> [f64; 2] {
+    let off = place - point;
+    let (e, f, g) = (du.length_squared(), du.dot(dv), dv.length_squared());
+    let (a, b) = (off.dot(du), off.dot(dv));
+    let determinant = e * g - f * f;
+    let next = [at[0] + (g * a - f * b) / determinant, at[1] + (e * b - f * a) / determinant];
+    if next.iter().all(|t| t.is_finite()) {
+        [0, 1].map(|axis: usize| next[axis].clamp(domain[axis][0], domain[axis][1]))
+    } else {
+        at
+    }
 }
 
 fn mixed(weights: [f64; 3], parameters: &[[f64; 2]; 3]) -> [f64; 2] {
@@ -126,13 +153,13 @@ pub(super) fn measure(
     surface: &dyn Surface,
     parameters: &[[f64; 2]; 3],
     corners: [Vec3; 3],
-    plain: &Plain,
+    found: &Distances,
     known: f64,
 ) -> f64 {
     let domain = surface.domain();
     let mut most = known;
-    for (weights, plain) in PLACES.into_iter().zip(plain) {
-        if *plain <= most {
+    for (weights, distance) in PLACES.into_iter().zip(found) {
+        if *distance <= most {
             continue;
         }
         let near = distance_from(surface, domain, place(weights, &corners), mixed(weights, parameters));

@@ -115,7 +115,7 @@ fn sample(curve: &Curve<'_>, options: &SurfaceOptions, least: usize) -> Result<V
         let total: f64 = intervals.iter().map(|interval| interval.density * interval.width()).sum();
         let wanted = (factor * total - 1e-9).ceil().max(count as f64);
         let most = options.max_triangles;
-        if !(wanted <= most as f64) {
+        if wanted > most as f64 || wanted.is_nan() {
             let triangles = if wanted.is_finite() { wanted as u64 } else { u64::MAX };
             return Err(TessellationError::TooLarge { triangles, most });
         }

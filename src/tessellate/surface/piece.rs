@@ -142,10 +142,10 @@ fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> 
         corners.push(refinement.corners(triangle));
     }
     made.measured = refinement.known_distance().unwrap_or_else(|| {
-        let plain = check::plain_distances(surface, &made.parameters, &corners);
+        let found = check::distances(surface, &made.parameters, &corners, |_| 0.0);
         let beyond =
-            |known: f64, t: usize| check::measure(surface, &made.parameters[t], corners[t], &plain[t], known);
-        (0..plain.len()).fold(0.0, beyond)
+            |known: f64, t: usize| check::measure(surface, &made.parameters[t], corners[t], &found[t], known);
+        (0..found.len()).fold(0.0, beyond)
     });
     made
 }

@@ -66,8 +66,9 @@ impl<'a> Refinement<'a> {
         }
         let parameters: Vec<_> = self.triangles.iter().map(|&triangle| self.parameters(triangle)).collect();
         let corners: Vec<_> = self.triangles.iter().map(|&triangle| self.corners(triangle)).collect();
-        let plain = check::plain_distances(self.surface, &parameters, &corners);
-        (0..plain.len()).map(|t| self.measured(&parameters[t], corners[t], &plain[t])).collect()
+        let enough = |t: usize| SURE * self.allowed(&parameters[t]);
+        let found = check::distances(self.surface, &parameters, &corners, enough);
+        (0..found.len()).map(|t| self.measured(&parameters[t], corners[t], &found[t])).collect()
     }
 
     /// Mends until every triangle passes.
@@ -107,14 +108,20 @@ impl<'a> Refinement<'a> {
             return if ratio.is_nan() { f64::INFINITY } else { ratio };
         }
         let corners = self.corners(triangle);
-        let plain = check::plain_distances(self.surface, &[parameters], &[corners]);
-        self.measured(&parameters, corners, &plain[0])
+        let enough = SURE * self.allowed(&parameters);
+        let found = check::distances(self.surface, &[parameters], &[corners], |_| enough);
+        self.measured(&parameters, corners, &found[0])
+    }
+
+    /// What measured distances of a triangle may be.
+    fn allowed(&self, parameters: &[[f64; 2]; 3]) -> f64 {
+        MEASURED_SHARE * self.table.tolerance(parameters)
     }
 
     /// The largest distance found over what is allowed.
-    fn measured(&self, parameters: &[[f64; 2]; 3], corners: [Vec3; 3], plain: &check::Plain) -> f64 {
-        let allowed = MEASURED_SHARE * self.table.tolerance(parameters);
-        let ratio = check::measure(self.surface, parameters, corners, plain, SURE * allowed) / allowed;
+    fn measured(&self, parameters: &[[f64; 2]; 3], corners: [Vec3; 3], found: &check::Distances) -> f64 {
+        let allowed = self.allowed(parameters);
+        let ratio = check::measure(self.surface, parameters, corners, found, SURE * allowed) / allowed;
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 

@@ -11,8 +11,8 @@ use ogee::tessellate::{Guarantee, SurfaceOptions, Tessellation, patches, surface
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 use truck_geometry::prelude::{
-    BSplineSurface, KnotVec, ParameterDivision2D, ParametricSurface, ParametricSurface3D, Point3 as TruckPoint,
-    Sphere, Torus,
+    BSplineSurface, KnotVec, ParameterDivision2D, ParametricSurface, ParametricSurface3D,
+    Point3 as TruckPoint, Sphere, Torus,
 };
 use truck_polymesh::StructuredMesh;
 
@@ -74,14 +74,20 @@ impl Triangles {
         };
         for i in 1..us.len() {
             for j in 1..vs.len() {
-                let [a, b, c, d] = [(i - 1, j - 1), (i, j - 1), (i, j), (i - 1, j)].map(|(i, j)| corner(i, j));
+                let [a, b, c, d] =
+                    [(i - 1, j - 1), (i, j - 1), (i, j), (i - 1, j)].map(|(i, j)| corner(i, j));
                 self.add(index, [a, b, c]);
                 self.add(index, [a, c, d]);
             }
         }
     }
 
-    fn add_curvo(&mut self, index: usize, mesh: &SurfaceTessellation3D<f64>, at: impl Fn(f64, f64) -> [f64; 2]) {
+    fn add_curvo(
+        &mut self,
+        index: usize,
+        mesh: &SurfaceTessellation3D<f64>,
+        at: impl Fn(f64, f64) -> [f64; 2],
+    ) {
         for face in mesh.faces() {
             let corner = |k: usize| {
                 let (p, uv) = (&mesh.points()[k], &mesh.uvs()[k]);
@@ -108,7 +114,8 @@ impl Triangles {
                 for j in 0..=STEPS - i {
                     let weights = [i, j, STEPS - i - j].map(|k| k as f64 / STEPS as f64);
                     let place: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
-                    let near = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * at[k][axis]).sum::<f64>());
+                    let near =
+                        [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * at[k][axis]).sum::<f64>());
                     most = most.max(distance(index, place, near));
                 }
             }
@@ -117,7 +124,15 @@ impl Triangles {
     }
 }
 
-fn row(name: &str, side: &str, tolerance: f64, triangles: &Triangles, error: f64, milliseconds: f64, least: f64) {
+fn row(
+    name: &str,
+    side: &str,
+    tolerance: f64,
+    triangles: &Triangles,
+    error: f64,
+    milliseconds: f64,
+    least: f64,
+) {
     let count = triangles.0.len();
     let ratio = if least > 0.0 { format!("{:.3}", count as f64 / least) } else { String::new() };
     println!("{name},{side},{tolerance:.3e},{count},{error:.3e},{milliseconds:.2},{ratio}");
@@ -173,7 +188,8 @@ fn sphere_rows() {
     let error = |triangles: &Triangles| triangles.error(|_, place, _| (place.length() - 1.0).abs());
     let least = 8.0 * PI / (3.0 * 3.0_f64.sqrt());
     let truck = Sphere::new(TruckPoint::new(0.0, 0.0, 0.0), 1.0);
-    let curvo = NurbsSurface3D::<f64>::try_sphere(&Point3::origin(), &Vector3::z(), &Vector3::x(), 1.0).expect("a sphere");
+    let curvo = NurbsSurface3D::<f64>::try_sphere(&Point3::origin(), &Vector3::z(), &Vector3::x(), 1.0)
+        .expect("a sphere");
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5] {
         ours("sphere", tolerance, least, &made, &error);
         truck_rows("sphere", &truck, ((0.0, PI), (0.0, TAU)), tolerance, &made, &error);
@@ -193,7 +209,8 @@ fn torus_rows() {
     let truck = Torus::new(TruckPoint::new(0.0, 0.0, 0.0), MAJOR, MINOR);
     let full = (0.0, TAU);
     let (x, y) = (Vector3::x(), Vector3::y());
-    let curvo = NurbsSurface3D::<f64>::try_torus(&Point3::origin(), &x, &y, MAJOR, MINOR, full, full).expect("a torus");
+    let curvo = NurbsSurface3D::<f64>::try_torus(&Point3::origin(), &x, &y, MAJOR, MINOR, full, full)
+        .expect("a torus");
     for tolerance in [1e-2, 1e-3, 1e-4] {
         ours("torus", tolerance, 0.0, &made, &error);
         truck_rows("torus", &truck, (full, full), tolerance, &made, &error);
@@ -312,26 +329,29 @@ fn evaluation() {
     };
     const TIMES: usize = 64;
     let each = 1e9 / (SIDE * SIDE) as f64;
-    let ours = each / TIMES as f64 * best(&|| {
-        for _ in 0..TIMES {
-            black_box(black_box(&patch).grid(black_box(&at), black_box(&at)));
-        }
-    });
-    let theirs = each * best(&|| {
-        for &u in black_box(&at) {
-            for &v in &at {
-                black_box((truck.subs(u, v), truck.normal(u, v)));
+    let ours = each / TIMES as f64
+        * best(&|| {
+            for _ in 0..TIMES {
+                black_box(black_box(&patch).grid(black_box(&at), black_box(&at)));
             }
-        }
-    });
-    let last = each * best(&|| {
-        for &u in black_box(&at) {
-            for &v in &at {
-                let (point, normal) = curvo.point_normal_at(u, v);
-                black_box((point, normal.normalize()));
+        });
+    let theirs = each
+        * best(&|| {
+            for &u in black_box(&at) {
+                for &v in &at {
+                    black_box((truck.subs(u, v), truck.normal(u, v)));
+                }
             }
-        }
-    });
+        });
+    let last = each
+        * best(&|| {
+            for &u in black_box(&at) {
+                for &v in &at {
+                    let (point, normal) = curvo.point_normal_at(u, v);
+                    black_box((point, normal.normalize()));
+                }
+            }
+        });
     let (points, normals) = patch.grid(&at, &at);
     let off = |point: &dyn Fn(f64, f64) -> (Vec3, Vec3)| {
         let pair = |k: usize| {
