@@ -76,6 +76,49 @@ fn volumes_are_as_they_should_be() {
             3.0 * PI,
             0.02,
         ),
+        // Half a pipe gets two half discs and a rectangle; a wedge of a lathe two sections that meet on the axis.
+        ("revolve([[1,0],[1,5]], angle = 180, kind = \"line\", tolerance = 1e-3);", 2.5 * PI, 2e-3),
+        ("revolve([[0,0],[1,0],[1,1],[0,1]], angle = 20, kind = \"line\", tolerance = 1e-3);", PI / 18.0, 2e-3),
+        // A side on the axis is none of the surface.
+        ("revolve([[0,0],[1,0],[1,1],[0,1]], closed = true, kind = \"line\", tolerance = 1e-3);", PI, 2e-3),
+        // Mitred: the section goes all the way.
+        (
+            "sweep([[0,0,0],[5,0,0],[5,5,0],[5,5,5]], 0.5*[[-1,-1],[1,-1],[1,1],[-1,1]], kind = \"line\", tolerance = 0.01);",
+            15.0,
+            1e-9,
+        ),
+        (
+            "sweep([[0,0,0],[5,0,0],[5,5,0],[0,5,0]], 0.5*[[-1,-1],[1,-1],[1,1],[-1,1]], closed = true, kind = \"line\", tolerance = 0.01);",
+            20.0,
+            1e-9,
+        ),
+        ("tube([[0,0,0],[5,0,0],[5,5,0]], r = 0.5, kind = \"line\", tolerance = 1e-3);", 2.5 * PI, 4e-3),
+        // Formulas: sides that meet are joined, poles are points, matrices and conditions without branches work.
+        (
+            "parametric(function(u, v) [(3 + cos(v)) * cos(u), (3 + cos(v)) * sin(u), sin(v)],
+                 u = [0, 360], v = [0, 360], tolerance = 1e-3);",
+            6.0 * PI * PI,
+            2e-3,
+        ),
+        (
+            "parametric(function(u, v) 2 * [cos(v) * cos(u), cos(v) * sin(u), sin(v)],
+                 u = [0, 360], v = [-90, 90], tolerance = 1e-3);",
+            32.0 / 3.0 * PI,
+            2e-3,
+        ),
+        (
+            "function turn(a) = [[cos(a), -sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]];
+             parametric(function(u, v) turn(30 * v) * [2 * cos(u), sin(u), v],
+                 u = [0, 360], v = [0, 3], tolerance = 1e-3);",
+            6.0 * PI,
+            2e-3,
+        ),
+        (
+            "f = function(u, v, lift = 0) [u, v, max(0, norm([u, v]) - 1, min(u, v) - 9) + lift + (-7 % 3) + 1];
+             parametric(f, u = [2, 3], v = [0, 1], thickness = 0.01, tolerance = 1e-4);",
+            0.01414,
+            1e-3,
+        ),
     ];
     for (text, expected, tolerance) in cases {
         let volume = solid(text).volume();
@@ -115,6 +158,8 @@ fn recipes_print_and_read_back() {
         "revolve([[1,0],[2,0],[2,1],[1,1]], angle = 90, start = 30, closed = true, tolerance = 0.01);",
         "tube([[0,0,0],[0,5,5],[5,5,5]], r = 1, closed = true, tolerance = 0.05);",
         "sweep([[0,0,0],[0,0.5,3]], [[0,0],[2,0],[2,1]], twist = 30, scale = 2, tolerance = 0.05);",
+        "parametric(function(u, v) [(3 + cos(v) ^ 2) * cos(u), sqrt(9 + cos(v)) * sin(u), atan2(sin(v), 3) / 9 + exp(0.1 * sin(v))],
+             u = [0, 360], v = [0, 360], tolerance = 0.05);",
     ];
     for text in texts {
         let (recipe, complaints) = evaluated(text);
@@ -145,10 +190,107 @@ fn what_is_wrong_is_said() {
         ("loft([[[0,0,0],[1,0,0],[0,1,0]]]);", "1 points where 2 are needed"),
         ("sweep([[0,0,0],[0,0,1]], [[0,0],[1,0],[0,1]], scale = 0);", "scale is 0"),
         ("tube([[0,0,0],[0,0,1]], tolerance = -1);", "tolerance must be a positive number"),
+        ("sphere(2, tolerance = 0);", "tolerance must be a positive number"),
+        (
+            "linear_extrude(2, twist = 90, tolerance = \"a\") square(1);",
+            "tolerance must be a positive number",
+        ),
+        ("tube([[0,0,0],[1,0,0],[0,0,0]], kind = \"line\");", "the path turns back on itself"),
+        ("parametric(3);", "parametric needs a function"),
+        ("parametric(function(u, v) [u, v]);", "must give three numbers, not [formula, formula]"),
+        ("parametric(function(u, v) [u, v, str(u)]);", "must give three numbers"),
+        (
+            "parametric(function(u, v) [u, v, 0], u = [1, 0]);",
+            "u must be a range [from, to] of finite numbers",
+        ),
     ];
     for (text, expected) in cases {
         let (_, complaints) = evaluated(text);
         assert!(complaints.iter().any(|complaint| complaint.contains(expected)), "{text}: {complaints:?}");
+    }
+}
+
+#[test]
+fn what_depends_on_parameters_decides_nothing() {
+    let texts = [
+        "parametric(function(u, v) u < 0.5 ? [u, v, 0] : [u, v, u]);",
+        "parametric(function(u, v) [u, v, u ? 1 : 0]);",
+        "parametric(function(u, v) [u, v, v == 1 ? 1 : 0]);",
+        "parametric(function(u, v) [u, v, u && v ? 1 : 0]);",
+        "parametric(function(u, v) [u, v, !u ? 1 : 0]);",
+        "parametric(function(u, v) [u, v, len([for (x = [u]) if (x) x])]);",
+    ];
+    for text in texts {
+        let mut host = Kitchen::default();
+        let main = Loaded { name: "a.scad".into(), text: text.into() };
+        let failure = script::evaluate(main, &mut host, &script::Options::default()).unwrap_err();
+        assert_eq!(failure, script::Failure::Error, "{text}");
+        assert!(host.complaints.iter().any(|said| said.contains("depends on the parameters")), "{text}");
+    }
+}
+
+#[test]
+fn caps_that_enclose_nothing_are_an_error() {
+    let texts = [
+        "bezier_patch([[[0,0,0],[0,4,0]],[[3,0,0],[3,4,0]]]);",
+        "parametric(function(u, v) [u, v, 1e-4 * u * v], tolerance = 0.01);",
+    ];
+    for text in texts {
+        let (recipe, complaints) = evaluated(text);
+        assert!(complaints.is_empty(), "{complaints:?}");
+        let error = csg::build(&recipe, &BuildOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("enclose nothing"), "{text}: {error}");
+    }
+}
+
+/// The largest of a measure over 28 points of every triangle.
+fn largest(solid: &Solid, measure: impl Fn(ogee::math::Vec3) -> f64) -> f64 {
+    let mesh = solid.mesh();
+    let mut most: f64 = 0.0;
+    for t in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(t);
+        for k in 0..49 {
+            let (i, j) = (f64::from(k / 7) / 6.0, f64::from(k % 7) / 6.0);
+            if i + j <= 1.0 {
+                most = most.max(measure(a + i * (b - a) + j * (c - a)));
+            }
+        }
+    }
+    most
+}
+
+#[test]
+fn curved_primitives_keep_their_tolerance() {
+    for tolerance in [0.3, 0.02, 0.003] {
+        for how in [format!("tolerance = {tolerance}, $fn = 5"), format!("$fe = {tolerance}")] {
+            let ball = solid(&format!("sphere(2, {how});"));
+            let off = largest(&ball, |p| 2.0 - p.length());
+            assert!(off <= tolerance && off > 0.4 * tolerance, "{how}: {off}");
+            let rod = solid(&format!("cylinder(h = 3, r = 2, {how}, center = true);"));
+            let off = largest(&rod, |p| if p.z.abs() < 1.4 { 2.0 - p.truncate().length() } else { 0.0 });
+            assert!(off <= tolerance * (1.0 + 1e-9) && off > 0.4 * tolerance, "{how}: {off}");
+            let disc = solid(&format!("linear_extrude(1) circle(d = 4, {how});"));
+            assert!(4.0 * PI - disc.volume() <= 4.0 * PI * tolerance, "{how}: {}", disc.volume());
+            let ring = solid(&format!("rotate_extrude(angle = 100, {how}) translate([1, 0]) square(1);"));
+            let (end_sine, end_cosine) = ogee::math::sin_cos_degrees(100.0);
+            let off = largest(&ring, |p| {
+                let (across, inside) = (p.truncate().length(), 0.01 < p.z && p.z < 0.99);
+                let at_ends = p.y.abs() < 1e-9 || (p.x * end_sine - p.y * end_cosine).abs() < 1e-9;
+                if inside && !at_ends { (2.0 - across).min((1.0 - across).abs()) } else { 0.0 }
+            });
+            assert!(off <= tolerance * (1.0 + 1e-9), "{how}: {off}");
+            // At its height, turned back, the wall of a twisted bar is a square.
+            let bar = solid(&format!("linear_extrude(4, twist = 120, {how}) square(2, center = true);"));
+            let off = largest(&bar, |p| {
+                if !(0.01..3.99).contains(&p.z) {
+                    return 0.0;
+                }
+                let (sine, cosine) = ogee::math::sin_cos(120_f64.to_radians() * p.z / 4.0);
+                let (x, y) = (p.x * cosine - p.y * sine, p.x * sine + p.y * cosine);
+                (1.0 - x.abs().max(y.abs())).abs()
+            });
+            assert!(off <= tolerance && off > 0.1 * tolerance, "{how}: {off}");
+        }
     }
 }
 

@@ -9,6 +9,7 @@ mod build;
 mod flat;
 mod frame;
 mod leaf;
+mod parametric;
 mod plan;
 mod print;
 mod solve;
@@ -18,6 +19,7 @@ pub use bounds::bounds;
 pub use build::{
     BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, build, build_with_progress,
 };
+pub use parametric::Parametric;
 pub use print::print;
 pub use surface::{Explicit, SurfaceBody};
 

@@ -1,8 +1,9 @@
-use super::{Body, Csg, Explicit, Flat, LinearSweep, RotateSweep, SurfaceBody};
+use super::{Body, Csg, Explicit, Flat, LinearSweep, Parametric, RotateSweep, SurfaceBody};
 use crate::boolean::Op;
 use crate::curve::Spline;
 use crate::math::{Affine3, Vec2, Vec3, degrees};
 use crate::mesh::Mesh;
+use crate::sdf::{Binary, Operation, Unary};
 use crate::surface::Patch;
 use std::fmt::Write;
 
@@ -142,9 +143,74 @@ fn surface_call(body: &SurfaceBody) -> String {
             space(tube.path()),
             number(tube.radius())
         ),
+        Explicit::Parametric(parametric) => parametric_call(parametric),
     };
     let thickness = body.thickness.map_or_else(String::new, |t| format!(", thickness = {}", number(t)));
     format!("{shape}{thickness}, tolerance = {})", number(body.tolerance))
+}
+
+/// The call of `parametric`, without its end; every operation has a name.
+fn parametric_call(surface: &Parametric) -> String {
+    let mut bindings = Vec::new();
+    let results = [0, 1, 2].map(|axis: usize| {
+        let operations = &surface.coordinates()[axis];
+        let name = |id: u32| format!("{}{id}", ["x", "y", "z"][axis]);
+        for (id, operation) in operations.iter().enumerate() {
+            bindings.push(format!("{} = {}", name(id as u32), operation_text(*operation, &name)));
+        }
+        name(operations.len() as u32 - 1)
+    });
+    let [[a, b], [c, d]] = surface.domain().map(|range| range.map(number));
+    let (bindings, results) = (bindings.join(", "), results.join(", "));
+    format!("parametric(function(u, v) let({bindings}) [{results}], u = [{a}, {b}], v = [{c}, {d}]")
+}
+
+/// An operation in the language, whose angles are degrees.
+fn operation_text(operation: Operation, name: &dyn Fn(u32) -> String) -> String {
+    let (unary, a) = match operation {
+        Operation::Axis(axis) => return ["u", "v", "0"][usize::from(axis)].to_owned(),
+        Operation::Constant(x) => return number(x),
+        Operation::Binary(op, a, b) => return binary_text(op, &name(a), &name(b)),
+        Operation::Unary(op, a) => (op, name(a)),
+    };
+    match unary {
+        Unary::Neg => format!("-{a}"),
+        Unary::Abs => format!("abs({a})"),
+        Unary::Recip => format!("1 / {a}"),
+        Unary::Sqrt => format!("sqrt({a})"),
+        Unary::Cbrt => format!("sign({a}) * pow(abs({a}), 1 / 3)"),
+        Unary::Square => format!("{a} * {a}"),
+        Unary::Floor => format!("floor({a})"),
+        Unary::Ceil => format!("ceil({a})"),
+        Unary::Round => format!("round({a})"),
+        Unary::Sin => format!("sin({a} * 180 / PI)"),
+        Unary::Cos => format!("cos({a} * 180 / PI)"),
+        Unary::Tan => format!("tan({a} * 180 / PI)"),
+        Unary::Asin => format!("asin({a}) * PI / 180"),
+        Unary::Acos => format!("acos({a}) * PI / 180"),
+        Unary::Atan => format!("atan({a}) * PI / 180"),
+        Unary::Exp => format!("exp({a})"),
+        Unary::Ln => format!("ln({a})"),
+        Unary::Not => format!("1 - abs(sign({a}))"),
+    }
+}
+
+fn binary_text(op: Binary, a: &str, b: &str) -> String {
+    match op {
+        Binary::Add => format!("{a} + {b}"),
+        Binary::Sub => format!("{a} - {b}"),
+        Binary::Mul => format!("{a} * {b}"),
+        Binary::Div => format!("{a} / {b}"),
+        Binary::Atan2 => format!("atan2({a}, {b}) * PI / 180"),
+        Binary::Min => format!("min({a}, {b})"),
+        Binary::Max => format!("max({a}, {b})"),
+        Binary::Compare => format!("sign({a} - {b})"),
+        Binary::Mod => format!("{a} - abs({b}) * floor({a} / abs({b}))"),
+        Binary::Pow => format!("pow({a}, {b})"),
+        // Where a is zero the first is zero, and the second b.
+        Binary::And => format!("abs(sign({a})) * {b}"),
+        Binary::Or => format!("{a} + (1 - abs(sign({a}))) * {b}"),
+    }
 }
 
 /// Faces run clockwise seen from outside, as the language has them.

@@ -1,5 +1,6 @@
 //! Explicit surfaces as leaves.
 
+use super::Parametric;
 use super::build::BuildError;
 use crate::curve::Spline;
 use crate::math::{Aabb, Blend, Vec2, Vec3};
@@ -39,6 +40,8 @@ pub enum Explicit {
     Sweep(Box<Sweep>),
     /// A round tube along a path.
     Tube(Box<Tube>),
+    /// Formulas of two parameters.
+    Parametric(Box<Parametric>),
 }
 
 impl SurfaceBody {
@@ -56,11 +59,12 @@ impl SurfaceBody {
             }
             Explicit::Sweep(sweep) => surface(&**sweep, &options),
             Explicit::Tube(tube) => surface(&**tube, &options),
+            Explicit::Parametric(parametric) => surface(&parametric.surface(), &options),
         };
         let mesh = made?.mesh;
         Ok(match self.thickness {
             Some(thickness) => thickened(&mesh, thickness)?,
-            None => capped(&mesh)?,
+            None => capped(&mesh, self.tolerance)?,
         })
     }
 
@@ -78,7 +82,8 @@ impl SurfaceBody {
                 }
             }
             Explicit::Sweep(sweep) => widened(Aabb::of(sweep.path().points().iter().copied()), sweep.reach()),
-            Explicit::Tube(tube) => widened(Aabb::of(tube.path().points().iter().copied()), tube.radius()),
+            Explicit::Tube(tube) => widened(Aabb::of(tube.path().points().iter().copied()), tube.reach()),
+            Explicit::Parametric(parametric) => parametric.bounds(),
         };
         // Rounding of the frames, and of the points.
         let slack = 1e-9 * bounds.size().max_element() + 0.5 * self.thickness.unwrap_or(0.0);
@@ -121,6 +126,10 @@ impl SurfaceBody {
                 hash.integers([3]);
                 hash_spline(hash, tube.path());
                 hash.numbers([tube.radius()]);
+            }
+            Explicit::Parametric(parametric) => {
+                hash.integers([4]);
+                parametric.hash(hash);
             }
         }
     }

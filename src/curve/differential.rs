@@ -107,6 +107,25 @@ pub struct Frame {
     pub binormal: Vec3,
 }
 
+impl Frame {
+    /// The frame with a unit tangent and the part of `normal` at a right angle to it, or where there is none the axis that
+    /// is farthest from the tangent.
+    pub(crate) fn starting(origin: Vec3, tangent: Vec3, normal: Vec3) -> Frame {
+        Frame::upright(origin, tangent, first_normal(tangent, normal))
+    }
+
+    /// The frame carried to a point and a unit tangent by double reflection.
+    pub(crate) fn carried(&self, point: Vec3, tangent: Vec3) -> Frame {
+        Frame::upright(point, tangent, doubly_reflected(self, point, tangent))
+    }
+
+    /// With the normal at a right angle to the tangent: rounding must not add up along a long curve.
+    fn upright(origin: Vec3, tangent: Vec3, normal: Vec3) -> Frame {
+        let normal = (normal - normal.dot(tangent) * tangent).normalize();
+        Frame { origin, tangent, normal, binormal: tangent.cross(normal) }
+    }
+}
+
 /// Frames along the curve that do not turn about its tangent, by double reflection (Wang, Jüttler, Zheng, Liu,
 /// Computation of rotation minimizing frames, 2008): the angle to the true frames shrinks with the fourth power of
 /// the step.
@@ -131,13 +150,10 @@ pub fn rotation_minimizing_frames<C: Curve<Point = Vec3>>(
         before = t;
         let jet = curve.jet(t);
         let tangent = jet.first.try_normalize().ok_or(CurveError::Parameter { value: t })?;
-        let normal = match frames.last() {
-            Some(frame) => doubly_reflected(frame, jet.point, tangent),
-            None => first_normal(tangent, normal),
-        };
-        // Rounding must not add up along a long curve.
-        let normal = (normal - normal.dot(tangent) * tangent).normalize();
-        frames.push(Frame { origin: jet.point, tangent, normal, binormal: tangent.cross(normal) });
+        frames.push(match frames.last() {
+            Some(frame) => frame.carried(jet.point, tangent),
+            None => Frame::starting(jet.point, tangent, normal),
+        });
     }
     Ok(frames)
 }
@@ -165,6 +181,10 @@ fn doubly_reflected(frame: &Frame, point: Vec3, tangent: Vec3) -> Vec3 {
         if square > 0.0 { v - across * (2.0 * across.dot(v) / square) } else { v }
     };
     let step = point - frame.origin;
+    if step == Vec3::ZERO {
+        // Two tangents of one point may differ by rounding: no plane to mirror in.
+        return frame.normal;
+    }
     let (normal, carried) = (mirror(frame.normal, step), mirror(frame.tangent, step));
     mirror(normal, tangent - carried)
 }

@@ -14,6 +14,29 @@ pub(super) fn farthest(recipe: &Csg, measure: &dyn Fn(Vec2) -> f64) -> f64 {
     reach(recipe, Affine3::IDENTITY, measure)
 }
 
+/// A length that no edge of a plane recipe exceeds whose outline reaches `radius` far out: that of its longest edge where
+/// it is a leaf, moved or coloured, else twice the reach.
+pub(super) fn longest_edge(recipe: &Csg, radius: f64) -> f64 {
+    let longest = match recipe {
+        Csg::Transform { map, child } => with_room(|| {
+            let stretch = |axis: Vec3| map.transform_vector3(axis).truncate().length();
+            // No direction of the plane is stretched by more than the root of the sum of squares.
+            longest_edge(child, f64::INFINITY) * crate::math::hypot(stretch(Vec3::X), stretch(Vec3::Y))
+        }),
+        Csg::Color { child, .. } => with_room(|| longest_edge(child, radius)),
+        Csg::Flat(Flat::Rectangle { min, max }) => (*max - *min).max_element(),
+        Csg::Flat(Flat::Circle { radius, fragments }) => {
+            2.0 * radius * degrees::sin(180.0 / f64::from(*fragments))
+        }
+        Csg::Flat(Flat::Polygon { contours }) => {
+            let edges = contours.iter().flat_map(|c| c.iter().zip(c.iter().cycle().skip(1)));
+            edges.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+        }
+        _ => f64::INFINITY,
+    };
+    longest.min(2.0 * radius)
+}
+
 fn reach(recipe: &Csg, map: Affine3, measure: &dyn Fn(Vec2) -> f64) -> f64 {
     let inner = |child: &Csg| with_room(|| reach(child, map, measure));
     let largest =

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 
 /// Below this radius a circle is a triangle: 2^-20, the grid OpenSCAD rounds to.
 const TINY: f64 = 1.0 / 1_048_576.0;
+
 impl Fragmentation {
     /// Smallest value of `$fa` and `$fs`, as in OpenSCAD.
     pub(super) const FINEST: f64 = 0.01;
@@ -30,21 +31,62 @@ impl Fragmentation {
         by_angle.min(by_size).max(5.0).ceil()
     }
 
+    /// The same with a distance that decides alone, whatever `$fn` says.
+    pub(super) fn within(self, error: f64) -> Fragmentation {
+        Fragmentation { count: 0.0, error, ..self }
+    }
+
+    /// The distance allowed, where one decides.
+    pub(super) fn tolerance(&self) -> Option<f64> {
+        (self.count <= 0.0 && self.error > 0.0 && self.error.is_finite()).then_some(self.error)
+    }
+
+    /// Number of fragments of a sphere: as of a circle, but that a facet between two meridians and two rings is farther
+    /// off than a chord, by `r - sqrt(r^2 - c^2)` where c is the radius of the circle around it, at most
+    /// `sqrt(2) r sin(pi / n)`.
+    pub(super) fn of_sphere(&self, radius: f64) -> f64 {
+        match self.tolerance() {
+            Some(error) if radius.abs() >= TINY && radius.is_finite() => {
+                let share = (1.0 - error / radius.abs()).max(0.0);
+                (2.0 * PI / math::acos(share * share)).ceil().max(3.0)
+            }
+            _ => self.of_circle(radius),
+        }
+    }
+
+    /// Number of fragments of a part of a circle: its share, rounded down as in OpenSCAD unless a distance must be kept.
+    pub(super) fn of_arc(&self, radius: f64, degrees: f64) -> f64 {
+        let share = self.of_circle(radius) * degrees.abs() / 360.0;
+        if self.tolerance().is_some() { share.ceil().max(1.0) } else { share.trunc().max(1.0) }
+    }
+
     /// Number of layers of a straight sweep of `height` that twists by `degrees`, of an outline that reaches `radius`
-    /// far out: as many as its outermost edge has fragments, at least one for 120 degrees.
-    pub(super) fn of_helix(&self, radius: f64, height: f64, degrees: f64) -> f64 {
+    /// far out and has no edge longer than `edge`: as many as its outermost edge has fragments, at least one for 120
+    /// degrees.
+    pub(super) fn of_helix(&self, radius: f64, edge: f64, height: f64, degrees: f64) -> f64 {
         let degrees = degrees.abs();
         let least = (degrees / 120.0).ceil().max(1.0);
         if self.count > 0.0 {
             return (degrees / 360.0 * self.count.trunc().max(3.0)).ceil().max(least);
         }
         if self.error > 0.0 {
-            return (degrees / 360.0 * self.of_circle(radius)).ceil().max(least);
+            return self.of_wall(radius, edge, degrees).max(least);
         }
         let length = math::hypot(degrees / 360.0 * 2.0 * PI * radius, height);
         let by_angle = (degrees / self.angle.max(Self::FINEST)).ceil();
         let by_size = (length / self.size.max(Self::FINEST)).ceil();
         by_angle.min(by_size).max(least)
+    }
+
+    /// Layers after which a twisting wall keeps the distance. In a layer that turns by a the helix of a corner is off its
+    /// chord by `r (1 - cos(a / 2))`, and an edge is off the diagonal between its two places by a quarter of how far it
+    /// turns, `e sin(a / 2) / 2`: together at most `r a^2 / 8 + e a / 4`.
+    fn of_wall(&self, radius: f64, edge: f64, degrees: f64) -> f64 {
+        let (square, linear) = (radius / 8.0, edge / 4.0);
+        let root = (linear * linear + 4.0 * square * self.error).sqrt();
+        // The positive root of square a^2 + linear a = error, without cancellation.
+        let angle = 2.0 * self.error / (linear + root);
+        (degrees * PI / 180.0 / angle).ceil()
     }
 }
 
@@ -85,7 +127,7 @@ mod tests {
     fn twists_have_as_many_layers_as_in_openscad() {
         let corner = 50.0_f64.sqrt();
         let check = |fragmentation: Fragmentation, degrees: f64, n: f64| {
-            assert_eq!(fragmentation.of_helix(corner, 10.0, degrees), n, "{fragmentation:?} {degrees}");
+            assert_eq!(fragmentation.of_helix(corner, 10.0, 10.0, degrees), n, "{fragmentation:?} {degrees}");
         };
         check(USUAL, 90.0, 8.0);
         check(USUAL, 720.0, 45.0);

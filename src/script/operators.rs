@@ -2,6 +2,7 @@
 
 use super::ast::{BinaryOp, UnaryOp};
 use super::budget::{Budget, Fault, Outcome, undefined};
+use super::formula;
 use super::value::{List, Value};
 use crate::math;
 use std::cmp::Ordering;
@@ -10,8 +11,13 @@ use std::cmp::Ordering;
 pub(super) fn unary(op: UnaryOp, operand: &Value, budget: &mut Budget) -> Outcome {
     match (op, operand) {
         (UnaryOp::Plus, value) => Ok(value.clone()),
+        (UnaryOp::Not, Value::Formula(_)) => Err(Fault::Wrong(formula::UNDECIDED.to_owned())),
         (UnaryOp::Not, value) => Ok(Value::Bool(!value.is_true())),
         (UnaryOp::Minus, Value::Number(value)) => Ok(Value::Number(-value)),
+        (UnaryOp::Minus, Value::Formula(expr)) => {
+            budget.trace()?;
+            Ok(Value::Formula(-expr))
+        }
         (UnaryOp::Minus, Value::List(list)) => each(list, budget, |value, budget| unary(op, value, budget)),
         (UnaryOp::BitNot, Value::Number(value)) => Ok(Value::Number(!(*value as i64) as f64)),
         (UnaryOp::Minus | UnaryOp::BitNot, value) => {
@@ -33,12 +39,19 @@ pub(super) fn binary(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) ->
         Op::Multiply => product(a, b, budget),
         Op::Divide => quotient(a, b, budget),
         Op::Modulo | Op::Power => match (a, b) {
+            (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(op, a, b, budget),
             (Value::Number(a), Value::Number(b)) if op == Op::Modulo => Ok(Value::Number(a % b)),
             (Value::Number(a), Value::Number(b)) => Ok(Value::Number(math::pow(*a, *b))),
             _ => mismatch(op, a, b),
         },
         Op::BitOr | Op::BitAnd | Op::ShiftLeft | Op::ShiftRight => bits(op, a, b),
     }
+}
+
+/// The formula of `a op b`, one of which is a formula.
+fn traced(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
+    budget.trace()?;
+    formula::binary(op, a, b).map_or_else(|| mismatch(op, a, b), Ok)
 }
 
 fn mismatch<T>(op: BinaryOp, a: &Value, b: &Value) -> Result<T, Fault> {
@@ -61,6 +74,7 @@ fn defined(outcome: Outcome) -> Outcome {
 
 /// Whether two values are the same; values of different types never are.
 pub(super) fn equal(a: &Value, b: &Value, budget: &mut Budget) -> Result<bool, Fault> {
+    formula::undecided(a, b)?;
     Ok(match (a, b) {
         (Value::Undef, Value::Undef) => true,
         (Value::Bool(a), Value::Bool(b)) => a == b,
@@ -108,6 +122,7 @@ fn holds(op: BinaryOp, order: Option<Ordering>) -> bool {
 /// How two values compare: `None` for types that do not, `Some(None)` where a NaN is in the way. Lists compare by
 /// the first elements that differ.
 fn order(a: &Value, b: &Value, budget: &mut Budget) -> Result<Option<Option<Ordering>>, Fault> {
+    formula::undecided(a, b)?;
     Ok(match (a, b) {
         (Value::Number(a), Value::Number(b)) => Some(a.partial_cmp(b)),
         (Value::Bool(a), Value::Bool(b)) => Some(Some(a.cmp(b))),
@@ -145,6 +160,7 @@ fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
                 a.iter().zip(b.iter()).map(|(a, b)| defined(sum(op, &a, &b, budget))).collect()
             })
         }
+        (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(op, a, b, budget),
         _ => mismatch(op, a, b),
     }
 }
@@ -152,13 +168,14 @@ fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
 fn product(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a * b)),
-        (Value::Number(_), Value::List(list)) => {
+        (Value::Number(_) | Value::Formula(_), Value::List(list)) => {
             each(list, budget, |value, budget| product(a, value, budget))
         }
-        (Value::List(list), Value::Number(_)) => {
+        (Value::List(list), Value::Number(_) | Value::Formula(_)) => {
             each(list, budget, |value, budget| product(value, b, budget))
         }
         (Value::List(a), Value::List(b)) => product_of_lists(a, b, budget),
+        (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(BinaryOp::Multiply, a, b, budget),
         _ => mismatch(BinaryOp::Multiply, a, b),
     }
 }
@@ -168,6 +185,10 @@ fn product_of_lists(a: &List, b: &List, budget: &mut Budget) -> Outcome {
         return undefined("a product with an empty list is undefined");
     }
     budget.spend(a.len() as u64 + b.len() as u64)?;
+    if formula::is_in(a) || formula::is_in(b) {
+        budget.trace()?;
+        return formula::product(a, b);
+    }
     match (a.numbers(), b.numbers()) {
         (Some(a), Some(b)) => dot(a, b),
         (None, Some(vector)) => {
@@ -228,12 +249,13 @@ fn combination(weights: &[f64], rows: &[List]) -> Outcome {
 fn quotient(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a / b)),
-        (Value::List(list), Value::Number(_)) => {
+        (Value::List(list), Value::Number(_) | Value::Formula(_)) => {
             each(list, budget, |value, budget| quotient(value, b, budget))
         }
-        (Value::Number(_), Value::List(list)) => {
+        (Value::Number(_) | Value::Formula(_), Value::List(list)) => {
             each(list, budget, |value, budget| quotient(a, value, budget))
         }
+        (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(BinaryOp::Divide, a, b, budget),
         _ => mismatch(BinaryOp::Divide, a, b),
     }
 }

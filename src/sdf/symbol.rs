@@ -22,6 +22,34 @@ pub enum Operation {
 }
 
 impl Expr {
+    /// The formula of plain operations, the last of which is the result; arguments must be earlier ones.
+    ///
+    /// ```
+    /// use ogee::math::Vec3;
+    /// use ogee::sdf::Expr;
+    ///
+    /// let [x, y, _] = Expr::axes();
+    /// let wave = x.sin() * 2.0 + y;
+    /// let again = Expr::of_operations(&wave.operations().unwrap());
+    /// assert_eq!(again.eval(Vec3::ONE), wave.eval(Vec3::ONE));
+    /// ```
+    ///
+    /// # Panics
+    /// When there is no operation, or an argument is not an earlier one.
+    pub fn of_operations(operations: &[Operation]) -> Expr {
+        let mut made: Vec<Expr> = Vec::with_capacity(operations.len());
+        for &operation in operations {
+            let expr = match operation {
+                Operation::Axis(axis) => Expr::axes()[usize::from(axis)].clone(),
+                Operation::Constant(x) => Expr::constant(x),
+                Operation::Unary(op, a) => Expr::unary(op, &made[a as usize]),
+                Operation::Binary(op, a, b) => Expr::binary(op, &made[a as usize], &made[b as usize]),
+            };
+            made.push(expr);
+        }
+        made.pop().expect("there is a result")
+    }
+
     /// The formula in plain operations, the result last; equal ones are there once. They give the same numbers,
     /// though not always the same zero. `None` when a field that is no formula (a mesh, a polygon, a tube) is part of
     /// it.

@@ -22,7 +22,8 @@ pub enum Classic {
         radii: [f64; 3],
     },
     /// An ellipsoid with rounded or sharpened corners: `|x/a|^(2/e) + |y/b|^(2/e)` to the power e/n, and `|z/c|^(2/n)`
-    /// (Barr, Superquadrics and angle-preserving transformations, 1981).
+    /// (Barr, Superquadrics and angle-preserving transformations, 1981). u and v are the angles of Barr's powers for exponents
+    /// of 1 and more, and the directions themselves for smaller ones.
     Superellipsoid {
         /// Half axes.
         radii: [f64; 3],
@@ -125,6 +126,20 @@ fn latitude(share: f64) -> [f64; 2] {
     [cosine, sine]
 }
 
+/// The point of the curve `|x|^(2/e) + |y|^(2/e) = 1` for a direction: its powers, which bend evenly for exponents of 1
+/// and more but rush away from the axes for smaller ones; there the point in that direction.
+fn superellipse(direction: [f64; 2], exponent: f64) -> [f64; 2] {
+    if exponent >= 1.0 {
+        return direction.map(|t| signed_power(t, exponent));
+    }
+    let [x, y] = direction;
+    // Over the larger one, so that nothing leaves the range of numbers.
+    let most = x.abs().max(y.abs());
+    let sum = pow(x.abs() / most, 2.0 / exponent) + pow(y.abs() / most, 2.0 / exponent);
+    let radius = pow(sum, -0.5 * exponent) / most;
+    [radius * x, radius * y]
+}
+
 /// A power that keeps the sign of the base.
 fn signed_power(x: f64, exponent: f64) -> f64 {
     pow(x.abs(), exponent).copysign(x)
@@ -144,8 +159,7 @@ impl Surface for Classic {
             Classic::Sphere { radius } => ellipsoid([radius; 3], u, v),
             Classic::Ellipsoid { radii } => ellipsoid(radii, u, v),
             Classic::Superellipsoid { radii: [a, b, c], exponents: [n, e] } => {
-                let ([out, up], [x, y]) =
-                    (latitude(v).map(|t| signed_power(t, n)), turn(u).map(|t| signed_power(t, e)));
+                let ([out, up], [x, y]) = (superellipse(latitude(v), n), superellipse(turn(u), e));
                 Vec3::new(a * out * x, b * out * y, c * up)
             }
             Classic::Cylinder { radius, height } => {

@@ -22,8 +22,10 @@
 
 mod area;
 mod b_spline;
+mod bends;
 mod classic;
 mod formula;
+mod frames;
 mod grid;
 mod jet;
 mod limit;
@@ -39,6 +41,7 @@ mod sweep;
 
 pub use area::area;
 pub use b_spline::from_b_spline;
+pub use bends::{Across, Bends, Cone};
 pub use classic::Classic;
 pub use formula::Formula;
 pub use jet::{Curvature, Jet};
@@ -86,6 +89,29 @@ pub trait Surface: Sync {
     /// The point at parameters of the domain.
     fn point(&self, u: f64, v: f64) -> Vec3;
 
+    /// The points at many parameters, within rounding of [`Surface::point`].
+    ///
+    /// # Panics
+    /// When there is not a place for each.
+    fn points(&self, parameters: &[[f64; 2]], out: &mut [Vec3]) {
+        assert_eq!(parameters.len(), out.len(), "a place for each point");
+        for (place, &[u, v]) in out.iter_mut().zip(parameters) {
+            *place = self.point(u, v);
+        }
+    }
+
+    /// The points at many parameters with the derivatives by u and by v, within rounding of [`Surface::jet`].
+    ///
+    /// # Panics
+    /// When there is not a place for each.
+    fn tangents(&self, parameters: &[[f64; 2]], out: &mut [[Vec3; 3]]) {
+        assert_eq!(parameters.len(), out.len(), "a place for each point");
+        for (place, &[u, v]) in out.iter_mut().zip(parameters) {
+            let jet = self.jet(u, v);
+            *place = [jet.point, jet.du, jet.dv];
+        }
+    }
+
     /// The point and its first and second derivatives; by default from differences, good to about 1e-9 and 1e-5 of the
     /// size of the surface over that of its domain.
     fn jet(&self, u: f64, v: f64) -> Jet {
@@ -120,8 +146,14 @@ pub trait Surface: Sync {
         None
     }
 
-    /// [`Surface::second_bounds`] of all cells of a regular grid over the domain, v running fastest.
-    fn second_bounds_table(&self, cells: [usize; 2]) -> Option<Vec<[f64; 3]>> {
+    /// [`Surface::second_bounds`], and what of the second derivatives is across the surface: with that it takes fewer
+    /// triangles where parameters are stretched unevenly.
+    fn bends(&self, part: [[f64; 2]; 2]) -> Option<Bends> {
+        self.second_bounds(part).map(|lengths| Bends { lengths, across: None })
+    }
+
+    /// [`Surface::bends`] of all cells of a regular grid over the domain, v running fastest.
+    fn bends_table(&self, cells: [usize; 2]) -> Option<Vec<Bends>> {
         let domain = self.domain();
         let at = |axis: usize, k: usize| {
             let [low, high] = domain[axis];
@@ -129,7 +161,7 @@ pub trait Surface: Sync {
         };
         let cell = |index: usize| {
             let (i, j) = (index / cells[1], index % cells[1]);
-            self.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
+            self.bends([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
         };
         (0..cells[0] * cells[1]).map(cell).collect()
     }
@@ -181,6 +213,16 @@ pub enum SurfaceError {
         /// The highest that is taken.
         most: usize,
     },
+    /// A coordinate is not made of plain operations alone.
+    NotPlain {
+        /// Which one: 0, 1 or 2.
+        axis: usize,
+    },
+    /// A path turns back on itself: nothing can be carried around that corner.
+    Reversal {
+        /// The parameter of the corner.
+        parameter: f64,
+    },
     /// A ray runs along a surface instead of meeting it in points.
     AlongRay,
     /// A curve that the surface is made of is wrong.
@@ -201,6 +243,10 @@ impl fmt::Display for SurfaceError {
             SurfaceError::Degree { actual, most } => {
                 write!(f, "degree {actual} where {most} is the highest")
             }
+            SurfaceError::NotPlain { axis } => {
+                write!(f, "coordinate {axis} is not a formula in plain operations")
+            }
+            SurfaceError::Reversal { parameter } => write!(f, "the path turns back on itself at {parameter}"),
             SurfaceError::AlongRay => f.write_str("the ray runs along the surface"),
             SurfaceError::Curve(error) => error.fmt(f),
         }

@@ -1,5 +1,7 @@
 //! Tensor-product control nets as flat lists: point (i, j) stands at `i * (degree in v + 1) + j`.
 
+use super::SurfaceError;
+use super::patch::check_degrees;
 use crate::curve::evaluate::{de_casteljau, lerp};
 use crate::math::Blend;
 
@@ -141,8 +143,39 @@ pub(super) fn restrict<P: Blend>(points: &mut [P], degrees: Degrees, axis: usize
     });
 }
 
+/// The net of the part over ranges of u and v.
+pub(super) fn part<P: Blend>(
+    points: &[P],
+    degrees: Degrees,
+    ranges: [[f64; 2]; 2],
+) -> Result<Vec<P>, SurfaceError> {
+    let mut part = points.to_vec();
+    for (axis, range) in ranges.into_iter().enumerate() {
+        let [low, high] = range;
+        if !(0.0 <= low && low < high && high <= 1.0) {
+            return Err(SurfaceError::Parameter { value: if low >= 0.0 { high } else { low } });
+        }
+        restrict(&mut part, degrees, axis, range);
+    }
+    Ok(part)
+}
+
+/// The same surface with degrees higher by these numbers.
+pub(super) fn elevated_by<P: Blend>(
+    points: &[P],
+    degrees: Degrees,
+    by: [usize; 2],
+) -> Result<(Vec<P>, Degrees), SurfaceError> {
+    check_degrees([degrees[0].saturating_add(by[0]), degrees[1].saturating_add(by[1])])?;
+    let mut net = (points.to_vec(), degrees);
+    for axis in std::iter::repeat_n(0, by[0]).chain(std::iter::repeat_n(1, by[1])) {
+        net = elevated(&net.0, net.1, axis);
+    }
+    Ok(net)
+}
+
 /// The same surface with a degree one higher along an axis.
-pub(super) fn elevated<P: Blend>(points: &[P], degrees: Degrees, axis: usize) -> (Vec<P>, Degrees) {
+fn elevated<P: Blend>(points: &[P], degrees: Degrees, axis: usize) -> (Vec<P>, Degrees) {
     let mut raised = degrees;
     raised[axis] += 1;
     let mut net = vec![P::ZERO; (raised[0] + 1) * (raised[1] + 1)];

@@ -1,5 +1,5 @@
 use super::net::{self, Degrees};
-use super::{Jet, Side, Surface, SurfaceError, grid, limit};
+use super::{Across, Bends, Jet, Side, Surface, SurfaceError, grid, limit};
 use crate::curve::evaluate::de_casteljau;
 use crate::curve::{AnyBezier, bounding_box};
 use crate::math::{Aabb, Vec3, Vec4};
@@ -113,15 +113,7 @@ impl Patch {
     /// # Errors
     /// [`SurfaceError::Parameter`] when a range is not ascending within [0, 1].
     pub fn part(&self, ranges: [[f64; 2]; 2]) -> Result<Patch, SurfaceError> {
-        let mut part = self.clone();
-        for (axis, range) in ranges.into_iter().enumerate() {
-            let [low, high] = range;
-            if !(0.0 <= low && low < high && high <= 1.0) {
-                return Err(SurfaceError::Parameter { value: if low >= 0.0 { high } else { low } });
-            }
-            net::restrict(&mut part.points, self.degrees, axis, range);
-        }
-        Ok(part)
+        Ok(Patch { points: net::part(&self.points, self.degrees, ranges)?, degrees: self.degrees })
     }
 
     /// The same patch written with degrees higher by these numbers.
@@ -129,11 +121,7 @@ impl Patch {
     /// # Errors
     /// [`SurfaceError::Degree`] above 200.
     pub fn elevated(&self, by: [usize; 2]) -> Result<Patch, SurfaceError> {
-        check_degrees([self.degrees[0].saturating_add(by[0]), self.degrees[1].saturating_add(by[1])])?;
-        let (mut points, mut degrees) = (self.points.clone(), self.degrees);
-        for axis in std::iter::repeat_n(0, by[0]).chain(std::iter::repeat_n(1, by[1])) {
-            (points, degrees) = net::elevated(&points, degrees, axis);
-        }
+        let (points, degrees) = net::elevated_by(&self.points, self.degrees, by)?;
         Ok(Patch { points, degrees })
     }
 
@@ -238,6 +226,16 @@ impl Surface for Patch {
         self.eval(u, v)
     }
 
+    fn points(&self, parameters: &[[f64; 2]], out: &mut [Vec3]) {
+        assert_eq!(parameters.len(), out.len(), "a place for each point");
+        grid::scattered(self, parameters, out);
+    }
+
+    fn tangents(&self, parameters: &[[f64; 2]], out: &mut [[Vec3; 3]]) {
+        assert_eq!(parameters.len(), out.len(), "a place for each point");
+        grid::scattered_tangents(self, parameters, out);
+    }
+
     fn jet(&self, u: f64, v: f64) -> Jet {
         let [point, du, dv, duu, duv, dvv] = net::jet(&self.points, self.degrees, u, v);
         Jet { point, du, dv, duu, duv, dvv }
@@ -254,44 +252,64 @@ impl Surface for Patch {
 
     /// The largest length in the control nets of the second derivatives, cut to the part.
     fn second_bounds(&self, part: [[f64; 2]; 2]) -> Option<[f64; 3]> {
-        let nets = SecondNets::of(&self.points, self.degrees);
-        Some(nets.cut(0, part[0]).cut(1, part[1]).bounds())
+        let nets = Nets::of(&self.points, self.degrees);
+        Some(nets.cut(0, part[0]).cut(1, part[1]).largest(Vec3::length))
     }
 
-    fn second_bounds_table(&self, cells: [usize; 2]) -> Option<Vec<[f64; 3]>> {
-        let nets = SecondNets::of(&self.points, self.degrees);
+    fn bends(&self, part: [[f64; 2]; 2]) -> Option<Bends> {
+        let nets = Nets::of(&self.points, self.degrees);
+        Some(nets.cut(0, part[0]).cut(1, part[1]).bends())
+    }
+
+    fn bends_table(&self, cells: [usize; 2]) -> Option<Vec<Bends>> {
+        let nets = Nets::of(&self.points, self.degrees);
         let range = |k: usize, count: usize| [k as f64 / count as f64, (k + 1) as f64 / count as f64];
         let strips = (0..cells[0]).map(|i| nets.cut(0, range(i, cells[0])));
-        let cell = |strip: SecondNets| (0..cells[1]).map(move |j| strip.cut(1, range(j, cells[1])).bounds());
+        let cell = |strip: Nets| (0..cells[1]).map(move |j| strip.cut(1, range(j, cells[1])).bends());
         Some(strips.flat_map(cell).collect())
     }
 }
 
-/// Control nets of the second derivatives.
-struct SecondNets([(Vec<Vec3>, Degrees); 3]);
+/// Control nets of the derivatives by u and v, and by uu, uv and vv.
+struct Nets {
+    first: [(Vec<Vec3>, Degrees); 2],
+    second: [(Vec<Vec3>, Degrees); 3],
+}
 
-impl SecondNets {
-    fn of(points: &[Vec3], degrees: Degrees) -> SecondNets {
-        let (by_u, by_v) = (net::derivative(points, degrees, 0), net::derivative(points, degrees, 1));
-        SecondNets([
-            net::derivative(&by_u.0, by_u.1, 0),
-            net::derivative(&by_u.0, by_u.1, 1),
-            net::derivative(&by_v.0, by_v.1, 1),
-        ])
+impl Nets {
+    fn of(points: &[Vec3], degrees: Degrees) -> Nets {
+        let first = [0, 1].map(|axis| net::derivative(points, degrees, axis));
+        let again = |k: usize, axis: usize| net::derivative(&first[k].0, first[k].1, axis);
+        let second = [again(0, 0), again(0, 1), again(1, 1)];
+        Nets { first, second }
     }
 
-    fn cut(&self, axis: usize, range: [f64; 2]) -> SecondNets {
-        SecondNets(self.0.clone().map(|(mut points, degrees)| {
-            net::restrict(&mut points, degrees, axis, range);
-            (points, degrees)
-        }))
+    fn cut(&self, axis: usize, range: [f64; 2]) -> Nets {
+        let cut = |(points, degrees): &(Vec<Vec3>, Degrees)| {
+            let mut points = points.clone();
+            net::restrict(&mut points, *degrees, axis, range);
+            (points, *degrees)
+        };
+        Nets { first: self.first.each_ref().map(cut), second: self.second.each_ref().map(cut) }
     }
 
-    /// Rounded up: each cut errs by a few units in the last place of the points it combines.
-    fn bounds(&self) -> [f64; 3] {
-        [0, 1, 2].map(|k| {
-            let (points, degrees) = &self.0[k];
-            net::largest(points) * (1.0 + 32.0 * (degrees[0] + degrees[1] + 2) as f64 * f64::EPSILON)
+    /// The largest of a measure of the points of each second derivative, rounded up: each cut errs by a few units in the
+    /// last place of the points it combines.
+    fn largest(&self, measure: impl Fn(Vec3) -> f64) -> [f64; 3] {
+        self.second.each_ref().map(|(points, degrees)| {
+            let rounding = 32.0 * (degrees[0] + degrees[1] + 2) as f64 * f64::EPSILON;
+            let most = points.iter().map(|&point| measure(point)).fold(0.0, f64::max);
+            most + rounding * net::largest(points)
         })
+    }
+
+    fn bends(&self) -> Bends {
+        let near = self.first.each_ref().map(|(points, _)| points.iter().sum::<Vec3>() / points.len() as f64);
+        let off = [0, 1].map(|k: usize| {
+            let most = self.first[k].0.iter().map(|&point| (point - near[k]).length()).fold(0.0, f64::max);
+            most + 1e-13 * net::largest(&self.first[k].0)
+        });
+        let along = |normal: Vec3| self.largest(|point| point.dot(normal).abs());
+        Bends { lengths: self.largest(Vec3::length), across: Across::new(near, off, along) }
     }
 }

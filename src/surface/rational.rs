@@ -1,6 +1,6 @@
 use super::net::{self, Degrees};
 use super::patch::check_degrees;
-use super::{Jet, Patch, Side, Surface, SurfaceError};
+use super::{Across, Bends, Jet, Patch, Side, Surface, SurfaceError};
 use crate::curve::Rational;
 use crate::math::{Aabb, Vec3, Vec4};
 
@@ -58,15 +58,7 @@ impl RationalPatch {
     /// # Errors
     /// [`SurfaceError::Parameter`] when a range is not ascending within [0, 1].
     pub fn part(&self, ranges: [[f64; 2]; 2]) -> Result<RationalPatch, SurfaceError> {
-        let mut part = self.clone();
-        for (axis, range) in ranges.into_iter().enumerate() {
-            let [low, high] = range;
-            if !(0.0 <= low && low < high && high <= 1.0) {
-                return Err(SurfaceError::Parameter { value: if low >= 0.0 { high } else { low } });
-            }
-            net::restrict(&mut part.points, self.degrees, axis, range);
-        }
-        Ok(part)
+        Ok(RationalPatch { points: net::part(&self.points, self.degrees, ranges)?, degrees: self.degrees })
     }
 
     /// The same patch written with degrees higher by these numbers.
@@ -74,11 +66,7 @@ impl RationalPatch {
     /// # Errors
     /// [`SurfaceError::Degree`] above 200.
     pub fn elevated(&self, by: [usize; 2]) -> Result<RationalPatch, SurfaceError> {
-        check_degrees([self.degrees[0].saturating_add(by[0]), self.degrees[1].saturating_add(by[1])])?;
-        let (mut points, mut degrees) = (self.points.clone(), self.degrees);
-        for axis in std::iter::repeat_n(0, by[0]).chain(std::iter::repeat_n(1, by[1])) {
-            (points, degrees) = net::elevated(&points, degrees, axis);
-        }
+        let (points, degrees) = net::elevated_by(&self.points, self.degrees, by)?;
         Ok(RationalPatch { points, degrees })
     }
 
@@ -143,44 +131,68 @@ impl Surface for RationalPatch {
         Some(net::border(&self.points, self.degrees, side as usize))
     }
 
-    /// With B the net moved so that the middle of the part is the origin, |B / w| is at most r, the largest distance of a
-    /// control point; then the derivatives of B = S w give, by the quotient rule, bounds for those of S.
     fn second_bounds(&self, part: [[f64; 2]; 2]) -> Option<[f64; 3]> {
-        let mut cut = self.points.clone();
-        for axis in [0, 1] {
-            net::restrict(&mut cut, self.degrees, axis, part[axis]);
-        }
-        let bounds = Aabb::of(cut.iter().copied().map(projected));
-        let middle = bounds.center();
-        let moved: Vec<Vec4> = cut.iter().map(|p| (p.truncate() - p.w * middle).extend(p.w)).collect();
-        let least = moved.iter().fold(f64::INFINITY, |least, p| least.min(p.w));
-        let radius = moved.iter().map(|p| p.truncate().length() / p.w).fold(0.0, f64::max);
-        let rates = part.map(|[low, high]| 1.0 / (high - low));
-        let by = |u: usize, v: usize| self.derivative_bounds(&moved, [u, v], rates);
-        let first = |(b, w): (f64, f64)| (b + w * radius) / least;
-        let ((bu, wu), (bv, wv)) = (by(1, 0), by(0, 1));
-        let (du, dv) = (first((bu, wu)), first((bv, wv)));
-        let second = |(b, w): (f64, f64), cross: f64| (b + cross + w * radius) / least * (1.0 + 1e-12);
-        Some([
-            second(by(2, 0), 2.0 * wu * du),
-            second(by(1, 1), wu * dv + wv * du),
-            second(by(0, 2), 2.0 * wv * dv),
-        ])
+        Some(Moved::new(self, part).second(Vec3::length))
+    }
+
+    fn bends(&self, part: [[f64; 2]; 2]) -> Option<Bends> {
+        let moved = Moved::new(self, part);
+        let lengths = moved.second(Vec3::length);
+        let [u, v] = part.map(|[low, high]| 0.5 * low + 0.5 * high);
+        let jet = self.jet(u, v);
+        // From the middle of the part, half of its extents at most, with some room for rounding.
+        let [s, t] = part.map(|[low, high]| (0.5 + 1e-9) * (high - low));
+        let rounding = 1e-12 * (jet.du.length() + jet.dv.length());
+        let off = [lengths[0] * s + lengths[1] * t + rounding, lengths[1] * s + lengths[2] * t + rounding];
+        let along = |normal: Vec3| moved.second(|point| point.dot(normal).abs());
+        Some(Bends { lengths, across: Across::new([jet.du, jet.dv], off, along) })
     }
 }
 
-impl RationalPatch {
-    /// The largest lengths of a derivative of the points and of the weight, for a net over a part.
-    fn derivative_bounds(&self, net: &[Vec4], orders: [usize; 2], rates: [f64; 2]) -> (f64, f64) {
-        let (mut points, mut degrees) = (net.to_vec(), self.degrees);
-        let mut rate = 1.0;
+/// The net over a part, moved so that the middle of the part is the origin.
+struct Moved {
+    /// The points, and their derivatives by u, v, uu, uv and vv.
+    nets: [Vec<Vec4>; 6],
+    least_weight: f64,
+}
+
+impl Moved {
+    fn new(patch: &RationalPatch, part: [[f64; 2]; 2]) -> Moved {
+        let mut cut = patch.points.clone();
         for axis in [0, 1] {
-            for _ in 0..orders[axis] {
-                (points, degrees) = net::derivative(&points, degrees, axis);
-                rate *= rates[axis];
-            }
+            net::restrict(&mut cut, patch.degrees, axis, part[axis]);
         }
-        let most = |f: fn(&Vec4) -> f64| points.iter().map(f).fold(0.0, f64::max) * rate;
-        (most(|p| p.truncate().length()), most(|p| p.w.abs()))
+        let middle = Aabb::of(cut.iter().copied().map(projected)).center();
+        cut.iter_mut().for_each(|p| *p = (p.truncate() - p.w * middle).extend(p.w));
+        let least_weight = cut.iter().fold(f64::INFINITY, |least, p| least.min(p.w));
+        let rates = part.map(|[low, high]| 1.0 / (high - low));
+        let by = |(points, degrees): &(Vec<Vec4>, Degrees), axis: usize| {
+            let (mut points, degrees) = net::derivative(points, *degrees, axis);
+            points.iter_mut().for_each(|point| *point *= rates[axis]);
+            (points, degrees)
+        };
+        let plain = (cut, patch.degrees);
+        let (u, v) = (by(&plain, 0), by(&plain, 1));
+        let (uu, uv, vv) = (by(&u, 0), by(&u, 1), by(&v, 1));
+        Moved { nets: [plain.0, u.0, v.0, uu.0, uv.0, vv.0], least_weight }
+    }
+
+    /// Bounds of the second derivatives of S in a seminorm. With B = S w the moved net, no point of S is farther from the
+    /// origin than a control point; the derivatives of S follow from those of B and w by the quotient rule.
+    fn second(&self, measure: impl Fn(Vec3) -> f64) -> [f64; 3] {
+        let least = self.least_weight;
+        let most = |net: &[Vec4]| net.iter().map(|p| measure(p.truncate())).fold(0.0, f64::max);
+        let weight = |net: &[Vec4]| net.iter().map(|p| p.w.abs()).fold(0.0, f64::max);
+        let [points, u, v, uu, uv, vv] = &self.nets;
+        let radius = points.iter().map(|p| measure(p.truncate() / p.w)).fold(0.0, f64::max);
+        let (wu, wv) = (weight(u), weight(v));
+        let first = |net: &[Vec4]| (most(net) + weight(net) * radius) / least;
+        let (du, dv) = (first(u), first(v));
+        let second = |net: &[Vec4], cross: f64| {
+            // A cut errs by a few units in the last place of the points it combines, not of what a seminorm leaves of them.
+            let size = net.iter().map(|p| p.truncate().length()).fold(0.0, f64::max);
+            (most(net) + cross + weight(net) * radius) / least * (1.0 + 1e-12) + 1e-13 * size / least
+        };
+        [second(uu, 2.0 * wu * du), second(uv, wu * dv + wv * du), second(vv, 2.0 * wv * dv)]
     }
 }

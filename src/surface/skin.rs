@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A profile in the half plane of x (distance from the axis) and y (height) turned about the z axis, from an angle by an
 /// angle, in radians: exact, of a rational patch for each piece of the profile and at most a quarter of a turn. u runs
-/// along the profile, v around; a full turn or more closes on itself, to the bit.
+/// along the profile, v around; a full turn or more closes on itself, to the bit. Pieces on the axis have no patch.
 ///
 /// # Errors
 /// [`SurfaceError::Number`] for angles that are not finite or zero, and for a profile on both sides of the axis.
@@ -37,7 +37,8 @@ pub fn revolution(
         Vec2::new(cosine, sine)
     };
     let mut patches = Vec::new();
-    for piece in profile.pieces() {
+    // A piece on the axis sweeps nothing.
+    for piece in profile.pieces().filter(|piece| piece.to_array().iter().any(|p| p.x != 0.0)) {
         for k in 0..arcs {
             patches.push(quarter(&piece.to_array(), direction(k), direction(k + 1), step));
         }

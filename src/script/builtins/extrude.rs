@@ -1,26 +1,26 @@
 //! Modules that make solids of plane shapes.
 
-use super::primitive::{checked, numbers, positive, unusable};
+use super::primitive::{checked, numbers, positive, precision, unusable};
 use super::{Builtin, module_row};
 use crate::csg::{Csg, Dimension, LinearSweep, RotateSweep};
 use crate::math::{Vec2, Vec3};
 use crate::script::Failure;
 use crate::script::degrees::radians;
 use crate::script::eval::{Invocation, Machine, Made};
-use crate::script::extent::farthest;
+use crate::script::extent::{farthest, longest_edge};
 use crate::script::value::Value;
 
 pub(super) const TABLE: &[Builtin] = &[
     module_row(
         "linear_extrude",
-        &["height", "v", "center", "convexity", "twist", "slices", "scale", "segments", "h"],
+        &["height", "v", "center", "convexity", "twist", "slices", "scale", "segments", "h", "tolerance"],
         7,
         "A plane shape swept up by height, twisted by degrees and scaled on its way.",
         linear_extrude,
     ),
     module_row(
         "rotate_extrude",
-        &["angle", "start", "convexity"],
+        &["angle", "start", "convexity", "tolerance"],
         2,
         "A plane shape swept about the z axis, its y axis up; angles in degrees.",
         rotate_extrude,
@@ -38,8 +38,10 @@ fn linear_extrude<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> R
     }
     let Some(vector) = direction(machine, call)? else { return Ok(machine.nothing()) };
     let twist = call.arguments.number("twist").filter(|twist| twist.is_finite()).unwrap_or(0.0);
-    let slices = slices(machine, call, &children, vector.length(), twist)?;
     let scale = end_scale(machine, call)?;
+    let Some(slices) = slices(machine, call, &children, vector.length(), twist, scale)? else {
+        return Ok(machine.nothing());
+    };
     let center = call.arguments.is_true("center");
     let sweep = LinearSweep { vector, center, twist: radians(twist), slices, scale };
     machine.wrapped(children, call.span, |child| Csg::LinearExtrude { sweep, child })
@@ -72,17 +74,23 @@ fn slices<'p>(
     children: &Made,
     height: f64,
     twist: f64,
-) -> Result<u32, Failure> {
+    scale: Vec2,
+) -> Result<Option<u32>, Failure> {
+    let Some(precision) = precision(machine, call)? else { return Ok(None) };
     let slices = match call.arguments.number("slices") {
         Some(slices) => slices.trunc().max(1.0),
         None if twist == 0.0 => 1.0,
         None => {
-            let outlines = children.shapes.iter().map(|shape| farthest(&shape.recipe, &Vec2::length));
-            machine.fragmentation().of_helix(outlines.fold(0.0, f64::max), height, twist)
+            let recipes = || children.shapes.iter().map(|shape| &*shape.recipe);
+            let radius = recipes().map(|recipe| farthest(recipe, &Vec2::length)).fold(0.0, f64::max);
+            let edge = recipes().map(|recipe| longest_edge(recipe, radius)).fold(0.0, f64::max);
+            // A distance must be kept where the outline is largest.
+            let largest = if precision.tolerance().is_some() { scale.max_element().max(1.0) } else { 1.0 };
+            precision.of_helix(largest * radius, largest * edge, height, twist)
         }
     };
     // The outline has at least three edges, and each layer has two triangles an edge.
-    checked(machine, call.span, slices, 6.0 * slices)
+    checked(machine, call.span, slices, 6.0 * slices).map(Some)
 }
 
 /// Size of the top against the base; negative ones count as 0.
@@ -110,7 +118,9 @@ fn rotate_extrude<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> R
         machine.warn(call.span, "a turn by 0 degrees gives nothing");
         return Ok(machine.nothing());
     }
-    let fragments = turn_fragments(machine, call, &children, angle, full)?;
+    let Some(fragments) = turn_fragments(machine, call, &children, angle, full)? else {
+        return Ok(machine.nothing());
+    };
     // A turn backwards is one forwards from its end.
     let (start, angle) = if angle < 0.0 { (start + angle, -angle) } else { (start, angle) };
     let sweep = RotateSweep { angle: radians(angle), start: radians(start), fragments };
@@ -123,11 +133,12 @@ fn turn_fragments<'p>(
     children: &Made,
     angle: f64,
     full: bool,
-) -> Result<u32, Failure> {
+) -> Result<Option<u32>, Failure> {
+    let Some(precision) = precision(machine, call)? else { return Ok(None) };
     let outlines = children.shapes.iter().map(|shape| farthest(&shape.recipe, &|p| p.x.abs()));
-    let circle = machine.fragmentation().of_circle(outlines.fold(0.0, f64::max));
-    let fragments = if full { circle } else { (circle * angle.abs() / 360.0).trunc().max(1.0) };
-    checked(machine, call.span, fragments, 6.0 * fragments)
+    let radius = outlines.fold(0.0, f64::max);
+    let fragments = if full { precision.of_circle(radius) } else { precision.of_arc(radius, angle) };
+    checked(machine, call.span, fragments, 6.0 * fragments).map(Some)
 }
 
 /// The children as one plane shape; solids among them are left out with a warning.

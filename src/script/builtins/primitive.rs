@@ -17,16 +17,28 @@ pub(super) const TABLE: &[Builtin] = &[
         "A box from the origin, or about it; size is a number or [x, y, z].",
         cube,
     ),
-    module_row("sphere", &["r", "d"], 1, "A sphere about the origin, by radius or diameter.", sphere),
+    module_row(
+        "sphere",
+        &["r", "d", "tolerance"],
+        1,
+        "A sphere about the origin, by radius or diameter.",
+        sphere,
+    ),
     module_row(
         "cylinder",
-        &["h", "r1", "r2", "center", "r", "d", "d1", "d2"],
+        &["h", "r1", "r2", "center", "r", "d", "d1", "d2", "tolerance"],
         4,
         "A cylinder or cone about the z axis, by radii or diameters.",
         cylinder,
     ),
     module_row("square", &["size", "center"], 2, "A rectangle from the origin, or about it.", square),
-    module_row("circle", &["r", "d"], 1, "A circle about the origin, by radius or diameter.", circle),
+    module_row(
+        "circle",
+        &["r", "d", "tolerance"],
+        1,
+        "A circle about the origin, by radius or diameter.",
+        circle,
+    ),
     module_row(
         "polygon",
         &["points", "paths", "convexity"],
@@ -87,8 +99,9 @@ fn sphere<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Ma
     if !positive(machine, call, "radius", &[radius]) {
         return Ok(machine.nothing());
     }
-    let facets = |n: f64| n * (n + 1.0);
-    let fragments = fragments(machine, call.span, radius, facets)?;
+    let Some(precision) = precision(machine, call)? else { return Ok(machine.nothing()) };
+    let count = precision.of_sphere(radius);
+    let fragments = fragments(machine, call.span, precision, count, count * (count + 1.0))?;
     machine.leaf(Csg::Body(Body::Sphere { radius, fragments }), call.span)
 }
 
@@ -97,7 +110,9 @@ fn circle<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Ma
     if !positive(machine, call, "radius", &[radius]) {
         return Ok(machine.nothing());
     }
-    let fragments = fragments(machine, call.span, radius, |n| n)?;
+    let Some(precision) = precision(machine, call)? else { return Ok(machine.nothing()) };
+    let count = precision.of_circle(radius);
+    let fragments = fragments(machine, call.span, precision, count, count)?;
     machine.leaf(Csg::Flat(Flat::Circle { radius, fragments }), call.span)
 }
 
@@ -115,7 +130,9 @@ fn cylinder<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<
         machine.warn(call.span, format!("a cylinder with the radii {low} and {high} is nothing"));
         return Ok(machine.nothing());
     }
-    let fragments = fragments(machine, call.span, low.max(high), |n| 4.0 * n)?;
+    let Some(precision) = precision(machine, call)? else { return Ok(machine.nothing()) };
+    let count = precision.of_circle(low.max(high));
+    let fragments = fragments(machine, call.span, precision, count, 4.0 * count)?;
     let heights = if arguments.is_true("center") { [-0.5 * height, 0.5 * height] } else { [0.0, height] };
     machine.leaf(Csg::Body(Body::Frustum { heights, radii: [low, high], fragments }), call.span)
 }
@@ -192,21 +209,38 @@ pub(super) fn positive<'p>(
     bad.is_none()
 }
 
-/// Number of fragments for a radius, where the facets they make are not too many.
-pub(super) fn fragments(
+/// What fragments depend on: `tolerance` where it is given, else the `$` variables; a warning and `None` where the
+/// tolerance is no positive number.
+pub(super) fn precision<'p>(
+    machine: &mut Machine<'p>,
+    call: &Invocation<'_, 'p>,
+) -> Result<Option<Fragmentation>, Failure> {
+    let Some(value) = call.arguments.get("tolerance").cloned() else {
+        return Ok(Some(machine.fragmentation()));
+    };
+    match value.finite().filter(|tolerance| *tolerance > 0.0) {
+        Some(tolerance) => Ok(Some(machine.fragmentation().within(tolerance))),
+        None => {
+            unusable(machine, call, "tolerance", &value, "a positive number")?;
+            Ok(None)
+        }
+    }
+}
+
+/// `count` as a number of fragments that come of `precision`, where the facets they make are not too many.
+fn fragments(
     machine: &mut Machine<'_>,
     span: Span,
-    radius: f64,
-    facets: impl Fn(f64) -> f64,
+    precision: Fragmentation,
+    count: f64,
+    facets: f64,
 ) -> Result<u32, Failure> {
-    let fragmentation = machine.fragmentation();
-    for (name, value) in [("$fa", fragmentation.angle), ("$fs", fragmentation.size)] {
-        if value < Fragmentation::FINEST && fragmentation.count <= 0.0 {
+    for (name, value) in [("$fa", precision.angle), ("$fs", precision.size)] {
+        if value < Fragmentation::FINEST && precision.count <= 0.0 && precision.error <= 0.0 {
             machine.warn(span, format!("{name} of {value} counts as {}", Fragmentation::FINEST));
         }
     }
-    let fragments = fragmentation.of_circle(radius);
-    checked(machine, span, fragments, facets(fragments))
+    checked(machine, span, count, facets)
 }
 
 /// `count` as a number of fragments, where `facets` are not too many.

@@ -1,16 +1,18 @@
 //! Solids that explicit surfaces bound.
 
 use super::curves::spline_of;
-use super::primitive::{numbers, positive, unusable};
+use super::primitive::{numbers, positive, precision, unusable};
 use super::{Builtin, module_row};
-use crate::csg::{Body, Csg, Explicit, SurfaceBody};
+use crate::csg::{Body, Csg, Explicit, Parametric, SurfaceBody};
 use crate::curve::Spline;
 use crate::math::{Aabb, Blend, Vec2, Vec3};
 use crate::script::Failure;
 use crate::script::budget::Fault;
 use crate::script::degrees::radians;
 use crate::script::eval::{Invocation, Machine, Made};
+use crate::script::formula;
 use crate::script::value::{List, Value};
+use crate::sdf::Expr;
 use crate::surface::{Patch, SurfaceError, Sweep, Tube, loft};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -29,6 +31,13 @@ pub(super) const TABLE: &[Builtin] = &[
         3,
         "Bezier patches joined where borders are equal, from lists or a .bpt file; open borders are capped.",
         bezier_surface,
+    ),
+    module_row(
+        "parametric",
+        &["f", "u", "v", "thickness", "tolerance"],
+        3,
+        "The points that function(u, v) gives over ranges of u and v, joined where they meet; open borders are capped.",
+        parametric,
     ),
     module_row(
         "revolve",
@@ -102,6 +111,36 @@ fn bezier_surface<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> R
         }
     }
     made(machine, call, Explicit::Patches(patches))
+}
+
+/// Calls the function once, with symbols for u and v: what it gives is a formula, whose bounds are known.
+fn parametric<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Made, Failure> {
+    let Some(Value::Function(function)) = call.arguments.get("f").cloned() else {
+        return refused(machine, call, "parametric needs a function such as function(u, v) [u, v, u * v]");
+    };
+    let mut domain = [[0.0, 1.0]; 2];
+    for (range, name) in domain.iter_mut().zip(["u", "v"]) {
+        let Some(value) = call.arguments.get(name).cloned() else { continue };
+        match numbers::<2>(&value).filter(|[low, high]| low.is_finite() && high.is_finite() && low < high) {
+            Some(given) => *range = given,
+            None => {
+                unusable(machine, call, name, &value, "a range [from, to] of finite numbers")?;
+                return Ok(machine.nothing());
+            }
+        }
+    }
+    let symbols = [Expr::x(), Expr::y()].map(Value::Formula).to_vec();
+    let point = machine.call_value(&function, symbols, call.span)?;
+    let coordinates: Option<Vec<Expr>> =
+        point.list().and_then(|list| list.iter().map(|value| formula::of(&value)).collect());
+    let Some(coordinates) = coordinates.and_then(|list| <[Expr; 3]>::try_from(list).ok()) else {
+        let shown = machine.shown_value(&point, call.span)?;
+        return refused(machine, call, &format!("the function must give three numbers, not {shown}"));
+    };
+    match Parametric::new(coordinates, domain) {
+        Ok(surface) => made(machine, call, Explicit::Parametric(Box::new(surface))),
+        Err(error) => refused(machine, call, &error.to_string()),
+    }
 }
 
 fn revolve<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Made, Failure> {
@@ -182,6 +221,7 @@ fn faulty<'p>(
 ) -> Result<Made, Failure> {
     match fault {
         Fault::Undefined(reason) => refused(machine, call, &format!("{what}: {reason}")),
+        Fault::Wrong(reason) => Err(machine.error(call.span, reason)),
         Fault::Limit(reason) => Err(machine.limit(call.span, reason)),
     }
 }
@@ -261,19 +301,12 @@ fn tolerance<'p>(
     call: &Invocation<'_, 'p>,
     shape: &Explicit,
 ) -> Result<Option<f64>, Failure> {
-    if let Some(value) = call.arguments.get("tolerance").cloned() {
-        let tolerance = value.finite().filter(|tolerance| *tolerance > 0.0);
-        if tolerance.is_none() {
-            unusable(machine, call, "tolerance", &value, "a positive number")?;
-        }
-        return Ok(tolerance);
-    }
-    let fragmentation = machine.fragmentation();
-    if fragmentation.count <= 0.0 && fragmentation.error > 0.0 && fragmentation.error.is_finite() {
-        return Ok(Some(fragmentation.error));
+    let Some(precision) = precision(machine, call)? else { return Ok(None) };
+    if let Some(tolerance) = precision.tolerance() {
+        return Ok(Some(tolerance));
     }
     let radius = 0.5 * extent(shape);
-    let fragments = fragmentation.of_circle(radius);
+    let fragments = precision.of_circle(radius);
     Ok(Some((radius * (1.0 - crate::math::cos(PI / fragments))).max(f64::MIN_POSITIVE)))
 }
 
@@ -290,5 +323,6 @@ fn extent(shape: &Explicit) -> f64 {
         }
         Explicit::Sweep(sweep) => space(sweep.path().points()).max(2.0 * sweep.reach()),
         Explicit::Tube(tube) => 2.0 * tube.radius(),
+        Explicit::Parametric(surface) => surface.extent(),
     }
 }

@@ -10,7 +10,7 @@ use crate::script::builtins::{Action, Builtin, NamedAction};
 use crate::script::diagnostic::Span;
 use crate::script::names::Symbol;
 use crate::script::report::Complaint;
-use crate::script::value::{Frame, Value};
+use crate::script::value::{Closure, Frame, Value};
 use std::rc::Rc;
 
 /// A function found for a call.
@@ -88,6 +88,30 @@ impl<'p> Machine<'p> {
                 Found::Nothing
             }
         })
+    }
+
+    /// Calls a function value with these arguments, without names.
+    pub(in crate::script) fn call_value(
+        &mut self,
+        closure: &Closure,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Value, Failure> {
+        let function = &self.program[closure.function];
+        let frame = Frame::new(function.frame, Some(closure.frame.clone()));
+        let mark = self.specials.mark();
+        let mut arguments = arguments.into_iter();
+        for parameter in &function.parameters {
+            let value = match (arguments.next(), parameter.default) {
+                (Some(value), _) => value,
+                (None, Some(default)) => self.eval(default, &closure.frame)?,
+                (None, None) => Value::Undef,
+            };
+            self.set(parameter.slot, parameter.name, value, &frame);
+        }
+        let value = self.run(Pending { function: closure.function, frame, unit: self.unit, span })?;
+        self.specials.restore(mark);
+        Ok(value)
     }
 
     fn found(&self, value: &Value) -> Option<Found> {
@@ -242,7 +266,7 @@ impl<'p> Machine<'p> {
         loop {
             match &program[id] {
                 Expr::Conditional { condition, then, otherwise } => {
-                    id = if self.eval(*condition, &frame)?.is_true() { *then } else { *otherwise };
+                    id = if self.holds(*condition, &frame)? { *then } else { *otherwise };
                 }
                 Expr::Let(inner) if inner.bindings.iter().all(|b| matches!(b.slot, Slot::Local(_))) => {
                     if let Room::Own(_) = inner.room {

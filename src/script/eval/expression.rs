@@ -2,6 +2,7 @@ use super::{Failure, Machine};
 use crate::script::ast::{Argument, BinaryOp, Binding, Expr, ExprId, Let, Place, Room, Slot};
 use crate::script::diagnostic::{Severity, Span};
 use crate::script::format;
+use crate::script::formula;
 use crate::script::names::Symbol;
 use crate::script::operators;
 use crate::script::report::Complaint;
@@ -54,7 +55,7 @@ impl<'p> Machine<'p> {
                 self.settle(outcome, program.span(id))
             }
             Expr::Conditional { condition, then, otherwise } => {
-                let chosen = if self.eval(*condition, frame)?.is_true() { then } else { otherwise };
+                let chosen = if self.holds(*condition, frame)? { then } else { otherwise };
                 self.eval(*chosen, frame)
             }
             Expr::Call(call) => self.call(call, id, frame),
@@ -154,6 +155,14 @@ impl<'p> Machine<'p> {
         })
     }
 
+    /// Whether a condition holds; an error where that depends on symbols.
+    pub(super) fn holds(&mut self, condition: ExprId, frame: &Rc<Frame>) -> Result<bool, Failure> {
+        match self.eval(condition, frame)? {
+            Value::Formula(_) => Err(self.error(self.program.span(condition), formula::UNDECIDED)),
+            value => Ok(value.is_true()),
+        }
+    }
+
     fn binary(
         &mut self,
         op: BinaryOp,
@@ -162,12 +171,12 @@ impl<'p> Machine<'p> {
         id: ExprId,
         frame: &Rc<Frame>,
     ) -> Result<Value, Failure> {
-        let a = self.eval(left, frame)?;
-        match op {
-            BinaryOp::And if !a.is_true() => return Ok(Value::Bool(false)),
-            BinaryOp::Or if a.is_true() => return Ok(Value::Bool(true)),
-            _ => {}
+        if let BinaryOp::And | BinaryOp::Or = op {
+            let decided = self.holds(left, frame)?;
+            let value = if decided == (op == BinaryOp::Or) { decided } else { self.holds(right, frame)? };
+            return Ok(Value::Bool(value));
         }
+        let a = self.eval(left, frame)?;
         let b = self.eval(right, frame)?;
         // What loops are made of, without a detour.
         if let (Value::Number(a), Value::Number(b)) = (&a, &b) {
@@ -269,7 +278,7 @@ impl<'p> Machine<'p> {
             return Err(self.error(span, "assert needs a condition"));
         };
         let message = named("message").or_else(|| unnamed.next());
-        if self.eval(condition.value, frame)?.is_true() {
+        if self.holds(condition.value, frame)? {
             return Ok(());
         }
         let place = self.program.span(condition.value);

@@ -186,7 +186,7 @@ impl<'p> Machine<'p> {
                 self.warn(span, text);
                 Ok(Value::Undef)
             }
-            Err(fault @ Fault::Limit(_)) => Err(self.stop(fault, span)),
+            Err(fault @ (Fault::Limit(_) | Fault::Wrong(_))) => Err(self.stop(fault, span)),
         }
     }
 
@@ -201,7 +201,7 @@ impl<'p> Machine<'p> {
                 self.say(Complaint::error(span, text));
                 Failure::Limit
             }
-            Fault::Undefined(text) => self.error(span, text),
+            Fault::Undefined(text) | Fault::Wrong(text) => self.error(span, text),
         }
     }
 

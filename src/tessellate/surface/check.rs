@@ -1,20 +1,26 @@
 //! How far a triangle is off its surface: a proof, and a measurement.
 
+use super::slide::{self, Turned};
 use super::table::Table;
 use crate::math::Vec3;
 use crate::surface::Surface;
 
 /// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
 pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
-    let rough = bound_by(table.bend(parameters), parameters);
-    if rough <= 1.0 {
-        return rough;
+    let whole = bound_by(table.bend(parameters), parameters);
+    if whole > slide::MOST {
+        return whole;
     }
     let range = |axis: usize| {
         let all = parameters.map(|p| p[axis]);
         [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     };
     let part = [range(0), range(1)];
+    let (free, left) = table.bend_left(parameters, part);
+    let rough = left.map_or(whole, |bends| bound_by(bends, parameters)) + table.cost(parameters, whole);
+    if rough <= 1.0 {
+        return rough;
+    }
     // Finer bounds cost much: only where they may help, or where a triangle is far smaller than its cell.
     const MAY_HELP: f64 = 1.5;
     if rough > MAY_HELP && !table.is_far_smaller(part) {
@@ -23,9 +29,15 @@ pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]
     if part.iter().any(|[low, high]| low >= high) {
         return rough;
     }
+    let Some(bends) = surface.bends(part) else { return rough };
     let tolerance = table.tolerance(parameters);
-    let tight = surface.second_bounds(part).map(|bends| bound_by(bends.map(|b| b / tolerance), parameters));
-    tight.map_or(rough, |tight| tight.min(rough))
+    let lengths = bends.lengths.map(|length| length / tolerance);
+    let whole = whole.min(bound_by(lengths, parameters));
+    let tight = match bends.across.filter(|_| left.is_some()) {
+        Some(across) => bound_by(Turned::new(&across, tolerance).bends(free, lengths), parameters),
+        None => whole,
+    };
+    rough.min(tight + table.cost(parameters, whole))
 }
 
 /// Half the squared radius of the smallest circle around the triangle in a norm that bounds the second derivatives:
@@ -77,18 +89,85 @@ const PLACES: [[f64; 3]; 7] = [
     [0.2, 0.2, 0.6],
 ];
 
+/// Distances of the places of a triangle from points of the surface.
+pub(super) type Distances = [f64; PLACES.len()];
+
+/// Distances of the places of many triangles: from the surface at the same parameters, and where these are above `enough`
+/// for the triangle, from the points that a step along the surface leads to when they are nearer.
+pub(super) fn distances(
+    surface: &dyn Surface,
+    parameters: &[[[f64; 2]; 3]],
+    corners: &[[Vec3; 3]],
+    enough: impl Fn(usize) -> f64,
+) -> Vec<Distances> {
+    const COUNT: usize = PLACES.len();
+    let at: Vec<[f64; 2]> =
+        parameters.iter().flat_map(|own| PLACES.map(|weights| mixed(weights, own))).collect();
+    let place = |k: usize| self::place(PLACES[k % COUNT], &corners[k / COUNT]);
+    let mut points = vec![Vec3::ZERO; at.len()];
+    surface.points(&at, &mut points);
+    let mut all: Vec<f64> = (0..at.len()).map(|k| (place(k) - points[k]).length()).collect();
+    let far: Vec<usize> = (0..at.len()).filter(|&k| all[k] > enough(k / COUNT)).collect();
+    let from: Vec<[f64; 2]> = far.iter().map(|&k| at[k]).collect();
+    let mut tangents = vec![[Vec3::ZERO; 3]; far.len()];
+    surface.tangents(&from, &mut tangents);
+    let domain = surface.domain();
+    let steps = far.iter().zip(&tangents).map(|(&k, tangents)| step(domain, place(k), at[k], tangents));
+    let to: Vec<[f64; 2]> = steps.collect();
+    let nearer = &mut points[..far.len()];
+    surface.points(&to, nearer);
+    for (&k, point) in far.iter().zip(nearer) {
+        all[k] = all[k].min((place(k) - *point).length());
+    }
+    all.as_chunks::<COUNT>().0.to_vec()
+}
+
+/// Parameters nearer to a place by one Gauss-Newton step, within the domain; the same where there is none.
+fn step(domain: [[f64; 2]; 2], place: Vec3, at: [f64; 2], &[point, du, dv]: &[Vec3; 3]) -> [f64; 2] {
+    let off = place - point;
+    let (e, f, g) = (du.length_squared(), du.dot(dv), dv.length_squared());
+    let (a, b) = (off.dot(du), off.dot(dv));
+    let determinant = e * g - f * f;
+    let next = [at[0] + (g * a - f * b) / determinant, at[1] + (e * b - f * a) / determinant];
+    if next.iter().all(|t| t.is_finite()) {
+        [0, 1].map(|axis: usize| next[axis].clamp(domain[axis][0], domain[axis][1]))
+    } else {
+        at
+    }
+}
+
+fn mixed(weights: [f64; 3], parameters: &[[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>())
+}
+
+fn place(weights: [f64; 3], corners: &[Vec3; 3]) -> Vec3 {
+    weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2]
+}
+
 /// The largest distance found between a triangle and its part of the surface: of places of the triangle from points of
 /// the surface that Newton steps bring near. Those points cover the surface as the places cover the mesh, so it is the
 /// distance both ways.
-pub(super) fn measure(surface: &dyn Surface, parameters: &[[f64; 2]; 3], corners: [Vec3; 3]) -> f64 {
+///
+/// What is not above `known` is not looked at closely: the result is at least that, and right where it is larger.
+pub(super) fn measure(
+    surface: &dyn Surface,
+    parameters: &[[f64; 2]; 3],
+    corners: [Vec3; 3],
+    found: &Distances,
+    known: f64,
+) -> f64 {
     let domain = surface.domain();
-    let mut most: f64 = 0.0;
-    for weights in PLACES {
-        let start = [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>());
-        let place: Vec3 = (0..3).map(|k| weights[k] * corners[k]).sum();
-        let near = distance_from(surface, domain, place, start);
+    let mut most = known;
+    for (weights, distance) in PLACES.into_iter().zip(found) {
+        if *distance <= most {
+            continue;
+        }
+        let near = distance_from(surface, domain, place(weights, &corners), mixed(weights, parameters));
         // NaN must not pass for small.
-        most = if near <= most { most } else { near };
+        if near.is_nan() {
+            return near;
+        }
+        most = most.max(near);
     }
     most
 }

@@ -85,39 +85,72 @@ fn least_segments(layout: &Layout<'_>, least: usize) -> Vec<usize> {
 
 /// How an interval of a curve bends.
 struct Interval {
+    range: [f64; 2],
     /// Second derivative over tolerance.
     bend: f64,
+    /// Whether that is a bound.
+    proven: bool,
     /// Segments that an interval of length 1 needs.
     density: f64,
     tolerance: f64,
 }
 
-fn sample(curve: &Curve<'_>, options: &SurfaceOptions, least: usize) -> Result<Vec<f64>, TessellationError> {
-    let [low, high] = curve.range;
-    let at = |share: f64| if share >= 1.0 { high } else { low + share * (high - low) };
-    let intervals: Vec<Interval> = (0..INTERVALS)
-        .map(|k| {
-            interval(curve, options, [at(k as f64 / INTERVALS as f64), at((k + 1) as f64 / INTERVALS as f64)])
-        })
-        .collect();
-    let width = (high - low) / INTERVALS as f64;
-    let total: f64 = intervals.iter().map(|interval| interval.density * width).sum();
-    let most = options.max_triangles as f64;
-    if !total.is_finite() || total > most {
-        let triangles = if total.is_finite() { total as u64 } else { u64::MAX };
-        return Err(TessellationError::TooLarge { triangles, most: options.max_triangles });
+impl Interval {
+    fn width(&self) -> f64 {
+        self.range[1] - self.range[0]
     }
-    let mut count = (total - 1e-9).ceil().max(least as f64) as usize;
+}
+
+fn sample(curve: &Curve<'_>, options: &SurfaceOptions, least: usize) -> Result<Vec<f64>, TessellationError> {
+    /// What segments are multiplied by when some fail.
+    const MORE: f64 = 1.0625;
+    let [low, high] = curve.range;
+    let at = |k: usize| {
+        if k == INTERVALS { high } else { low + (high - low) * k as f64 / INTERVALS as f64 }
+    };
+    let mut intervals: Vec<Interval> =
+        (0..INTERVALS).map(|k| interval(curve, options, [at(k), at(k + 1)])).collect();
+    let (mut factor, mut count) = (1.0, least);
     loop {
+        let total: f64 = intervals.iter().map(|interval| interval.density * interval.width()).sum();
+        let wanted = (factor * total - 1e-9).ceil().max(count as f64);
+        let most = options.max_triangles;
+        if wanted > most as f64 || wanted.is_nan() {
+            let triangles = if wanted.is_finite() { wanted as u64 } else { u64::MAX };
+            return Err(TessellationError::TooLarge { triangles, most });
+        }
+        count = wanted as usize;
         let parameters = spread(curve, &intervals, total, count);
-        if holds(curve, options, &intervals, &parameters) {
+        let failing = failing(curve, options, &intervals, &parameters);
+        if failing.is_empty() {
             return Ok(parameters);
         }
-        count += (count / 16).max(1);
-        if count as f64 > most {
-            return Err(TessellationError::TooLarge { triangles: count as u64, most: options.max_triangles });
+        intervals = split(curve, options, intervals, &failing);
+        (factor, count) = (factor * MORE, count + 1);
+    }
+}
+
+/// Halves the intervals with these indices, which ascend, as long as they are not tiny.
+fn split(
+    curve: &Curve<'_>,
+    options: &SurfaceOptions,
+    intervals: Vec<Interval>,
+    failing: &[usize],
+) -> Vec<Interval> {
+    /// Over the range of the curve.
+    const TINY: f64 = 1e-7;
+    let least = TINY * (curve.range[1] - curve.range[0]);
+    let mut halves = Vec::with_capacity(intervals.len() + failing.len());
+    for (index, whole) in intervals.into_iter().enumerate() {
+        if failing.binary_search(&index).is_ok() && whole.width() > least {
+            let [low, high] = whole.range;
+            let middle = 0.5 * low + 0.5 * high;
+            halves.extend([[low, middle], [middle, high]].map(|range| interval(curve, options, range)));
+        } else {
+            halves.push(whole);
         }
     }
+    halves
 }
 
 fn interval(curve: &Curve<'_>, options: &SurfaceOptions, range: [f64; 2]) -> Interval {
@@ -125,7 +158,9 @@ fn interval(curve: &Curve<'_>, options: &SurfaceOptions, range: [f64; 2]) -> Int
     let places = [range[0], middle, range[1]];
     let tolerance =
         places.iter().map(|&t| options.precision.at(curve.point(t))).fold(f64::INFINITY, f64::min);
-    let derivatives = places.map(|t| curve.derivatives(t));
+    // At a cusp or a root there may be none.
+    let mut derivatives: Vec<[Vec3; 2]> = places.iter().map(|&t| curve.derivatives(t)).collect();
+    derivatives.retain(|both| both.iter().all(|derivative| derivative.is_finite()));
     let proven = match options.guarantee {
         Guarantee::Proven => curve.second_bound(range),
         Guarantee::Measured => None,
@@ -143,52 +178,65 @@ fn interval(curve: &Curve<'_>, options: &SurfaceOptions, range: [f64; 2]) -> Int
     };
     let turning = derivatives.iter().map(|&both| turn(both)).fold(0.0, f64::max);
     let density = (bend / (8.0 * SHARE)).sqrt().max(options.angle.map_or(0.0, |angle| turning / angle));
-    Interval { bend, density, tolerance }
+    Interval { range, bend, proven: proven.is_some(), density, tolerance }
 }
 
 /// Parameters of the inner vertices of so many segments, each of which needs about as much as the others.
 fn spread(curve: &Curve<'_>, intervals: &[Interval], total: f64, count: usize) -> Vec<f64> {
     let [low, high] = curve.range;
-    let width = (high - low) / INTERVALS as f64;
     // A little everywhere, so that straight parts between bends are divided by length.
     let floor = (total / (high - low)).max(1.0 / (high - low)) * 0.05;
-    let weights: Vec<f64> = intervals.iter().map(|interval| interval.density.max(floor) * width).collect();
-    let sum: f64 = weights.iter().sum();
+    let weight = |interval: &Interval| interval.density.max(floor) * interval.width();
+    let sum: f64 = intervals.iter().map(weight).sum();
     let mut parameters = Vec::with_capacity(count.saturating_sub(1));
     let (mut before, mut k) = (0.0, 0);
     for step in 1..count {
         let wanted = sum * step as f64 / count as f64;
-        while k + 1 < weights.len() && before + weights[k] < wanted {
-            before += weights[k];
+        while k + 1 < intervals.len() && before + weight(&intervals[k]) < wanted {
+            before += weight(&intervals[k]);
             k += 1;
         }
-        let share = ((wanted - before) / weights[k]).clamp(0.0, 1.0);
-        parameters.push((low + width * (k as f64 + share)).clamp(low, high));
+        let share = ((wanted - before) / weight(&intervals[k])).clamp(0.0, 1.0);
+        parameters.push((intervals[k].range[0] + intervals[k].width() * share).clamp(low, high));
     }
     parameters.dedup();
     parameters
 }
 
-/// Whether every segment keeps its share of the tolerance.
-fn holds(curve: &Curve<'_>, options: &SurfaceOptions, intervals: &[Interval], parameters: &[f64]) -> bool {
+/// The intervals that segments meet which do not keep their share of the tolerance.
+fn failing(
+    curve: &Curve<'_>,
+    options: &SurfaceOptions,
+    intervals: &[Interval],
+    parameters: &[f64],
+) -> Vec<usize> {
     let [low, high] = curve.range;
     let bounds: Vec<f64> = std::iter::once(low).chain(parameters.iter().copied()).chain([high]).collect();
-    let index = |t: f64| (((t - low) / (high - low) * INTERVALS as f64) as usize).min(INTERVALS - 1);
-    bounds.windows(2).all(|pair| {
-        let (a, b) = (pair[0], pair[1]);
-        let met = &intervals[index(a)..=index(b)];
-        let tolerance = met.iter().map(|interval| interval.tolerance).fold(f64::INFINITY, f64::min);
-        let square = (b - a) * (b - a) / 8.0;
-        if met.iter().all(|interval| interval.bend * square <= SHARE) {
-            return true;
+    let index = |t: f64| intervals.partition_point(|i| i.range[1] <= t).min(intervals.len() - 1);
+    let mut all = Vec::new();
+    for pair in bounds.windows(2) {
+        let [first, last] = [pair[0], pair[1]].map(index);
+        if !holds(curve, options, &intervals[first..=last], [pair[0], pair[1]]) {
+            all.extend(first..=last);
         }
-        match options.guarantee {
-            Guarantee::Proven if let Some(bound) = curve.second_bound([a, b]) => {
-                bound * square <= SHARE * tolerance
-            }
-            _ => deviation(curve, a, b) <= SHARE * tolerance,
+    }
+    all.dedup();
+    all
+}
+
+/// Whether a segment keeps its share of the tolerance.
+fn holds(curve: &Curve<'_>, options: &SurfaceOptions, met: &[Interval], [a, b]: [f64; 2]) -> bool {
+    let tolerance = met.iter().map(|interval| interval.tolerance).fold(f64::INFINITY, f64::min);
+    let square = (b - a) * (b - a) / 8.0;
+    if met.iter().all(|interval| interval.proven && interval.bend * square <= SHARE) {
+        return true;
+    }
+    match options.guarantee {
+        Guarantee::Proven if let Some(bound) = curve.second_bound([a, b]) => {
+            bound * square <= SHARE * tolerance
         }
-    })
+        _ => deviation(curve, a, b) <= SHARE * tolerance,
+    }
 }
 
 /// The largest distance of three points of the curve from a chord.

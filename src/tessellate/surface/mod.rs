@@ -9,7 +9,8 @@
 //! surface point by at most half of sum l_i |p - p_i|^2 in the norm of the second derivatives, which never exceeds half the
 //! squared radius of the smallest circle around T in that norm. Bounds of the second derivatives over the cells that T
 //! meets make it a proof (for right triangles: Filip, Magedson, Markot, Surface algorithms using bounds on derivatives,
-//! 1986). It bounds the distance from the mesh to the surface and from the surface to the mesh.
+//! 1986). It bounds the distance from the mesh to the surface and from the surface to the mesh. Where only what bends across
+//! the surface counts, see the notes of `slide`.
 
 mod caps;
 mod check;
@@ -19,6 +20,7 @@ mod layout;
 mod patches;
 mod piece;
 mod refine;
+mod slide;
 mod table;
 mod thicken;
 
@@ -57,7 +59,8 @@ pub struct View {
 /// What the check of a triangle rests on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guarantee {
-    /// Bounds of second derivatives where the surface brings them ([`Surface::second_bounds`]), else as `Measured`.
+    /// Bounds of second derivatives where the surface brings them ([`Surface::second_bounds`], and fewer triangles with
+    /// [`Surface::bends`]), else as `Measured`.
     #[default]
     Proven,
     /// Distances at seven points of every triangle. Fewer triangles where a surface is unevenly parametrised, such as
@@ -203,12 +206,12 @@ impl fmt::Display for TessellationError {
                 write!(f, "a tolerance of {value} is below the rounding of this surface, about {finest}")
             }
             TessellationError::NotFinite { surface, parameters: [u, v] } => {
-                write!(f, "surface {surface} is not finite at u = {u}, v = {v}")
+                write!(f, "surface {surface} is not finite at u = {u:.9}, v = {v:.9}")
             }
             TessellationError::NotReached { surface, parameters: [u, v] } => {
                 write!(
                     f,
-                    "surface {surface} cannot be followed at u = {u}, v = {v}: it has a tear or a cusp there"
+                    "surface {surface} cannot be followed at u = {u:.9}, v = {v:.9}: it has a tear or a cusp there"
                 )
             }
             TessellationError::Tangled { edges, triangles } => {

@@ -1,7 +1,7 @@
 //! One piece: rows, then better triangles where some fail.
 
 use super::edge::Edges;
-use super::frame::{Frame, Local, Node, settled};
+use super::frame::{Frame, Local, Node};
 use super::layout::{Layout, Piece};
 use super::refine::Refinement;
 use super::table::Table;
@@ -42,7 +42,7 @@ impl Vertex {
 }
 
 /// Segments are laid out as long as right triangles allow. Staggered ones would allow more, but rows of different counts
-/// do not stagger everywhere, and what fails is split: between 0.9 and 1.1 spheres, tori and the teapot take fewest here.
+/// do not stagger everywhere, and what fails is split.
 const STRETCH: f64 = 1.0;
 
 pub(super) fn tessellate(
@@ -128,19 +128,24 @@ fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> 
         bound: table.proven.then_some(0.0),
         measured: 0.0,
     };
-    for (index, triangle) in refinement.triangles.iter().enumerate() {
+    let mut corners = Vec::with_capacity(refinement.triangles.len());
+    for (&triangle, ratio) in refinement.triangles.iter().zip(&refinement.ratios) {
         let vertices = triangle.map(vertex);
         if vertices[0] == vertices[1] || vertices[1] == vertices[2] || vertices[2] == vertices[0] {
             continue;
         }
-        let parameters = settled(triangle.map(|local| refinement.nodes[local as usize]));
-        if let Some(bound) = &mut made.bound {
-            *bound = bound.max(refinement.ratios[index] * table.tolerance(&parameters));
-        }
-        let corners = triangle.map(|local| refinement.positions[local as usize]);
-        made.measured = made.measured.max(check::measure(surface, &parameters, corners));
+        let parameters = refinement.parameters(triangle);
+        let bound = ratio * table.tolerance(&parameters);
+        made.bound = made.bound.map(|most| most.max(bound));
         made.triangles.push(vertices);
         made.parameters.push(parameters);
+        corners.push(refinement.corners(triangle));
     }
+    made.measured = refinement.known_distance().unwrap_or_else(|| {
+        let found = check::distances(surface, &made.parameters, &corners, |_| 0.0);
+        let beyond =
+            |known: f64, t: usize| check::measure(surface, &made.parameters[t], corners[t], &found[t], known);
+        (0..found.len()).fold(0.0, beyond)
+    });
     made
 }

@@ -12,6 +12,8 @@ use crate::surface::Surface;
 const NONE: u32 = Topology::NONE;
 /// Share of the tolerance that measured distances may use: between the places that are looked at they may be larger.
 const MEASURED_SHARE: f64 = 0.95;
+/// Below this share of what is allowed, distances need no closer look.
+const SURE: f64 = 0.5;
 /// Parameters nearer than this, over their own size and that of the domain, are not split any more.
 const FINEST: f64 = 1e-10;
 
@@ -54,8 +56,19 @@ impl<'a> Refinement<'a> {
     ) -> Refinement<'a> {
         let twins = Topology::new(&triangles).twins().to_vec();
         let mut new = Refinement { surface, table, nodes, positions, triangles, twins, ratios: Vec::new() };
-        new.ratios = (0..new.triangles.len()).map(|t| new.ratio(new.triangles[t])).collect();
+        new.ratios = new.ratios_of_all();
         new
+    }
+
+    fn ratios_of_all(&self) -> Vec<f64> {
+        if self.table.proven {
+            return self.triangles.iter().map(|&triangle| self.ratio(triangle)).collect();
+        }
+        let parameters: Vec<_> = self.triangles.iter().map(|&triangle| self.parameters(triangle)).collect();
+        let corners: Vec<_> = self.triangles.iter().map(|&triangle| self.corners(triangle)).collect();
+        let enough = |t: usize| SURE * self.allowed(&parameters[t]);
+        let found = check::distances(self.surface, &parameters, &corners, enough);
+        (0..found.len()).map(|t| self.measured(&parameters[t], corners[t], &found[t])).collect()
     }
 
     /// Mends until every triangle passes.
@@ -84,20 +97,43 @@ impl<'a> Refinement<'a> {
         Ok(())
     }
 
-    fn parameters(&self, triangle: [Local; 3]) -> [[f64; 2]; 3] {
+    pub(super) fn parameters(&self, triangle: [Local; 3]) -> [[f64; 2]; 3] {
         settled(triangle.map(|local| self.nodes[local as usize]))
     }
 
     fn ratio(&self, triangle: [Local; 3]) -> f64 {
         let parameters = self.parameters(triangle);
-        let ratio = if self.table.proven {
-            check::bound(self.table, self.surface, &parameters)
-        } else {
-            let corners = triangle.map(|local| self.positions[local as usize]);
-            check::measure(self.surface, &parameters, corners)
-                / (MEASURED_SHARE * self.table.tolerance(&parameters))
-        };
+        if self.table.proven {
+            let ratio = check::bound(self.table, self.surface, &parameters);
+            return if ratio.is_nan() { f64::INFINITY } else { ratio };
+        }
+        let corners = self.corners(triangle);
+        let enough = SURE * self.allowed(&parameters);
+        let found = check::distances(self.surface, &[parameters], &[corners], |_| enough);
+        self.measured(&parameters, corners, &found[0])
+    }
+
+    /// What measured distances of a triangle may be.
+    fn allowed(&self, parameters: &[[f64; 2]; 3]) -> f64 {
+        MEASURED_SHARE * self.table.tolerance(parameters)
+    }
+
+    /// The largest distance found over what is allowed.
+    fn measured(&self, parameters: &[[f64; 2]; 3], corners: [Vec3; 3], found: &check::Distances) -> f64 {
+        let allowed = self.allowed(parameters);
+        let ratio = check::measure(self.surface, parameters, corners, found, SURE * allowed) / allowed;
         if ratio.is_nan() { f64::INFINITY } else { ratio }
+    }
+
+    /// The largest distance, where measured ratios tell it: small ones are not exact, and none are of different tolerances.
+    pub(super) fn known_distance(&self) -> Option<f64> {
+        let most = self.ratios.iter().copied().fold(0.0, f64::max);
+        let tolerance = self.table.same_tolerance().filter(|_| !self.table.proven && most > SURE)?;
+        Some(most * MEASURED_SHARE * tolerance)
+    }
+
+    pub(super) fn corners(&self, triangle: [Local; 3]) -> [Vec3; 3] {
+        triangle.map(|local| self.positions[local as usize])
     }
 
     fn corner(&self, half_edge: u32) -> Local {

@@ -1,7 +1,8 @@
 //! How a piece bends, cell by cell: what its density of vertices and the check of its triangles come from.
 
-use super::{Guarantee, SurfaceOptions, TessellationError};
-use crate::surface::{Jet, Side, Surface};
+use super::slide::{Free, Slides, Turned};
+use super::{Guarantee, Precision, SurfaceOptions, TessellationError};
+use crate::surface::{Bends, Jet, Side, Surface};
 
 /// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
 const CELLS: [usize; 2] = [12, 32];
@@ -14,6 +15,8 @@ pub(super) struct Table {
     /// Second derivatives over tolerance, by uu, uv, vv.
     bends: Vec<[f64; 3]>,
     tolerances: Vec<f64>,
+    /// Where distances may be measured to other parameters than those of the triangle.
+    slides: Slides,
     /// Segments that a length of 1 along u, and along v, needs.
     densities: Vec<[f64; 2]>,
     /// Whether the bends are bounds.
@@ -32,15 +35,13 @@ impl Table {
             let [low, high] = domain[axis];
             if k == cells[axis] { high } else { low + (high - low) * k as f64 / cells[axis] as f64 }
         };
-        let bounds = match options.guarantee {
-            Guarantee::Proven if domain == surface.domain() => surface.second_bounds_table(cells),
-            Guarantee::Proven => {
-                let part = |k: usize| {
-                    let (i, j) = (k / cells[1], k % cells[1]);
-                    surface.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
-                };
-                (0..cells[0] * cells[1]).map(part).collect()
-            }
+        let part = |k: usize| {
+            let (i, j) = (k / cells[1], k % cells[1]);
+            surface.bends([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
+        };
+        let bounds: Option<Vec<Bends>> = match options.guarantee {
+            Guarantee::Proven if domain == surface.domain() => surface.bends_table(cells),
+            Guarantee::Proven => (0..cells[0] * cells[1]).map(part).collect(),
             Guarantee::Measured => None,
         };
         let needed = bounds.is_none() || options.angle.is_some();
@@ -49,9 +50,11 @@ impl Table {
             cells,
             bends: Vec::new(),
             tolerances: Vec::new(),
+            slides: Slides::default(),
             densities: Vec::new(),
             proven: bounds.is_some(),
         };
+        let (mut turned, mut turns): (Vec<Option<Turned>>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
         for cell in 0..cells[0] * cells[1] {
             let (i, j) = (cell / cells[1], cell % cells[1]);
             let middle = [0.5 * at(0, i) + 0.5 * at(0, i + 1), 0.5 * at(1, j) + 0.5 * at(1, j + 1)];
@@ -59,15 +62,10 @@ impl Table {
             if jet.is_some_and(|jet| !jet.point.is_finite()) {
                 return Err(TessellationError::NotFinite { surface: index, parameters: middle });
             }
-            let tolerance = match options.precision {
-                super::Precision::Distance(tolerance) => tolerance,
-                precision @ super::Precision::View(_) => [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)]
-                    .map(|(i, j)| precision.at(surface.point(at(0, i), at(1, j))))
-                    .into_iter()
-                    .fold(f64::INFINITY, f64::min),
-            };
+            let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
+            let tolerance = least_tolerance(surface, options, corners.map(|(i, j)| [at(0, i), at(1, j)]));
             let bend = match &bounds {
-                Some(bounds) => bounds[cell],
+                Some(bounds) => bounds[cell].lengths,
                 None => jet.as_ref().map_or([0.0; 3], measured_bend),
             };
             if !bend.iter().all(|b| b.is_finite()) {
@@ -78,11 +76,18 @@ impl Table {
                 (Some(angle), Some(jet)) => turning(jet).map(|rate| rate / angle),
                 _ => [0.0; 2],
             };
-            let plain = table.density_of(bend);
+            let across = bounds.as_ref().and_then(|bounds| bounds[cell].across);
+            turned.push(across.map(|across| Turned::new(&across, tolerance)));
             table.bends.push(bend);
             table.tolerances.push(tolerance);
-            table.densities.push([plain[0].max(turn[0]), plain[1].max(turn[1])]);
+            turns.push(turn);
         }
+        table.slides = Slides::new(domain, cells, turned, &table.bends, &table.tolerances);
+        let density = |(cell, turn): (usize, [f64; 2])| {
+            let plain = table.density_of(table.slides.bends_of(cell, table.bends[cell]));
+            [0, 1].map(|axis: usize| plain[axis].max(turn[axis]))
+        };
+        table.densities = turns.into_iter().enumerate().map(density).collect();
         Ok(table)
     }
 
@@ -97,7 +102,7 @@ impl Table {
     }
 
     /// Cells that the box of some parameters meets, as ranges of indices.
-    fn met(&self, parameters: &[[f64; 2]; 3]) -> [[usize; 2]; 2] {
+    pub(super) fn met(&self, parameters: &[[f64; 2]; 3]) -> [[usize; 2]; 2] {
         [0, 1].map(|axis: usize| {
             let [low, high] = self.domain[axis];
             let count = self.cells[axis];
@@ -117,7 +122,7 @@ impl Table {
         })
     }
 
-    fn met_cells(&self, parameters: &[[f64; 2]; 3]) -> impl Iterator<Item = usize> + use<> {
+    fn met_cells(&self, parameters: &[[f64; 2]; 3]) -> impl Iterator<Item = usize> + Clone + use<> {
         let [[i0, i1], [j0, j1]] = self.met(parameters);
         let width = self.cells[1];
         (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| i * width + j))
@@ -131,9 +136,30 @@ impl Table {
         })
     }
 
+    /// The largest bends around a triangle that steps do not make up for, and which steps these are.
+    pub(super) fn bend_left(
+        &self,
+        parameters: &[[f64; 2]; 3],
+        part: [[f64; 2]; 2],
+    ) -> (Free, Option<[f64; 3]>) {
+        let free = self.slides.free(part, self.met(parameters));
+        (free, self.slides.bends(free, self.met_cells(parameters), &self.bends))
+    }
+
+    /// What steps cost, over the tolerance.
+    pub(super) fn cost(&self, parameters: &[[f64; 2]; 3], ratio: f64) -> f64 {
+        self.slides.cost(self.met_cells(parameters), ratio)
+    }
+
     /// The least tolerance around a triangle.
     pub(super) fn tolerance(&self, parameters: &[[f64; 2]; 3]) -> f64 {
         self.met_cells(parameters).map(|cell| self.tolerances[cell]).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The tolerance, where it is the same everywhere.
+    pub(super) fn same_tolerance(&self) -> Option<f64> {
+        let first = self.tolerances[0];
+        self.tolerances.iter().all(|&tolerance| tolerance == first).then_some(first)
     }
 
     /// Segments that a length of 1 along an axis needs in a cell.
@@ -148,6 +174,17 @@ impl Table {
         let [[i, _], [j, _]] = self.met(&[middle; 3]);
         let along = [0, 1].map(|axis: usize| (to[axis] - from[axis]) * self.density(i, j, axis));
         along[0] * along[0] + along[1] * along[1]
+    }
+}
+
+/// What is allowed at the nearest of some places to a camera, or everywhere.
+fn least_tolerance(surface: &dyn Surface, options: &SurfaceOptions, places: [[f64; 2]; 4]) -> f64 {
+    match options.precision {
+        Precision::Distance(tolerance) => tolerance,
+        precision @ Precision::View(_) => {
+            let at = places.map(|[u, v]| precision.at(surface.point(u, v)));
+            at.into_iter().fold(f64::INFINITY, f64::min)
+        }
     }
 }
 
