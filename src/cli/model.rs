@@ -5,6 +5,7 @@ use super::settings::ScriptArgs;
 use super::stop::Stop;
 use super::terminal::Terminal;
 use crate::csg::{self, BuildError, Built, Progress};
+use crate::isosurface::IsoError;
 use crate::script::{self, Evaluated, Failure};
 use serde_json::{Map, Value};
 use std::time::Instant;
@@ -83,13 +84,18 @@ pub(super) fn build(
 fn explain(source: &Source, error: &BuildError, strict: bool) -> Stop {
     let text = format!("{source}: {error}");
     match error {
-        BuildError::Limit { .. } | BuildError::TooDeep { .. } => Stop::Limit(Some(text)),
+        BuildError::Limit { .. }
+        | BuildError::TooDeep { .. }
+        | BuildError::TooManyShapes { .. }
+        | BuildError::Meshing(IsoError::TooManyCells { .. }) => Stop::Limit(Some(text)),
         BuildError::NotClosed { .. } if strict => Stop::NotClosed(text),
         BuildError::NotClosed { .. }
         | BuildError::NonFinite { .. }
         | BuildError::Sweep(_)
         | BuildError::Hull(_)
         | BuildError::Surface(_)
-        | BuildError::Curves(_) => Stop::Error(text),
+        | BuildError::Curves(_)
+        | BuildError::Field(_)
+        | BuildError::Meshing(_) => Stop::Error(text),
     }
 }

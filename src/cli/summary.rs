@@ -62,7 +62,7 @@ impl Summary {
 
     /// Adds how the build went.
     pub(super) fn report(&mut self, report: &Report) -> &mut Summary {
-        let Report { made, booleans, reused, skipped, certificate, notes: _ } = report;
+        let Report { made, booleans, reused, skipped, certificate, meshings: _, notes: _ } = report;
         self.row(
             "steps",
             json!({ "made": made, "booleans": booleans, "reused": reused, "skipped": skipped }),

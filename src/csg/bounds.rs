@@ -1,5 +1,6 @@
 use super::arena::{Arena, Node};
 use super::frame::{mapped_box, overlap, plane_part, widened};
+use super::field;
 use super::{Body, Csg, Dimension, Flat, LinearSweep, RotateSweep};
 use crate::boolean::Op;
 use crate::math::{Aabb, Vec2, Vec3};
@@ -43,6 +44,11 @@ pub(super) fn local_bounds(recipe: &Csg, dimension: Option<Dimension>, children:
         }
         Csg::LinearExtrude { sweep, .. } => linear_bounds(sweep, flat_child(children)),
         Csg::RotateExtrude { sweep, .. } => rotate_bounds(sweep, flat_child(children)),
+        Csg::Blend { .. } | Csg::Offset { .. } => {
+            let solid = |child: &&&Node<'_>| child.dimension != Some(Dimension::Two);
+            let taking_part: Vec<&Node<'_>> = children.iter().filter(solid).copied().collect();
+            proper(field::plan::bounds(recipe, &taking_part).0)
+        }
     }
 }
 
@@ -73,6 +79,7 @@ fn body_bounds(body: &Body) -> Aabb {
         }
         Body::Mesh(mesh) => mesh.bounds(),
         Body::Surface(surface) => surface.bounds(),
+        Body::Field(field) => proper(field.bounds()),
     }
 }
 

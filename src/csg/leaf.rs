@@ -44,6 +44,7 @@ impl Solver<'_, '_> {
                 Ok(Leaf::of(rotate_extrude(&region, sweep)?))
             }
             Csg::Hull { .. } => Ok(Leaf::of(convex_hull(&self.hull_points(node)?)?)),
+            Csg::Blend { .. } | Csg::Offset { .. } => self.smooth_leaf(node),
             Csg::Nothing | Csg::Flat(_) | Csg::Transform { .. } | Csg::Color { .. } | Csg::Combine { .. } => {
                 unreachable!("plans have no such leaf in space")
             }
@@ -67,6 +68,7 @@ impl Solver<'_, '_> {
                 self.check_limit(mesh.triangles.len() as u64)?;
                 Leaf { geometry: Geometry::Mesh(Arc::new(mesh)), clean: false }
             }
+            Body::Field(field) => self.field_leaf(field)?,
         })
     }
 

@@ -1,7 +1,7 @@
 //! Carrying out a plan.
 
 use super::arena::{Arena, NodeId};
-use super::build::{BuildError, BuildOptions, Color, Note, Progress, Report};
+use super::build::{BuildError, BuildOptions, Color, Note, Progress, Report, Stage};
 use super::frame::{is_identity, widened};
 use super::plan::{self, Kind, Plan, Spot, Uses};
 use crate::boolean::{self, Op, Operand, Tree};
@@ -76,7 +76,7 @@ impl<'a, 'b> Solver<'a, 'b> {
             options,
             resolution: options.resolution * arena.root().bounds.size().max_element(),
             progress,
-            steps: Progress { done: 0, total },
+            steps: Progress { done: 0, total, stage: Stage::Solids },
             spent: 0,
             leaves: HashMap::new(),
             regions: HashMap::new(),
@@ -116,7 +116,13 @@ impl<'a, 'b> Solver<'a, 'b> {
 
     pub(super) fn step(&mut self) {
         let done = self.steps.done + 1;
-        self.steps = Progress { done, total: self.steps.total.max(done) };
+        self.steps = Progress { done, total: self.steps.total.max(done), ..self.steps };
+        (self.progress)(self.steps);
+    }
+
+    /// Tells what is done from now on.
+    pub(super) fn show(&mut self, stage: Stage) {
+        self.steps.stage = stage;
         (self.progress)(self.steps);
     }
 

@@ -30,6 +30,14 @@ impl Fragmentation {
         by_angle.min(by_size).max(5.0).ceil()
     }
 
+    /// The largest distance of a circle of this radius from its fragments, not 0: `$fe` itself where it decides.
+    pub(super) fn chord_error(&self, radius: f64) -> f64 {
+        if self.count <= 0.0 && self.error > 0.0 && self.error.is_finite() {
+            return self.error;
+        }
+        (radius * (1.0 - math::cos(PI / self.of_circle(radius)))).max(f64::MIN_POSITIVE)
+    }
+
     /// Number of layers of a straight sweep of `height` that twists by `degrees`, of an outline that reaches `radius`
     /// far out: as many as its outermost edge has fragments, at least one for 120 degrees.
     pub(super) fn of_helix(&self, radius: f64, height: f64, degrees: f64) -> f64 {
