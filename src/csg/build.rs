@@ -295,7 +295,7 @@ pub fn build_with_progress(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Built, BuildError> {
     let arena = Arena::new(recipe);
-    arena.nodes().iter().try_for_each(|node| check_numbers(node.recipe))?;
+    check_all(&arena)?;
     let uses = Uses::of(&arena);
     let spot = Spot { node: arena.root_id(), map: Affine3::IDENTITY, color: None };
     let mut report = Report::default();
@@ -313,6 +313,11 @@ pub fn build_with_progress(
         }
     };
     Ok(Built { shape, colors, report: solver.into_report() })
+}
+
+/// Refuses numbers that cannot be used.
+pub(super) fn check_all(arena: &Arena<'_>) -> Result<(), BuildError> {
+    arena.nodes().iter().try_for_each(|node| check_numbers(node.recipe))
 }
 
 fn check_numbers(recipe: &Csg) -> Result<(), BuildError> {

@@ -6,6 +6,7 @@
 mod arena;
 mod bounds;
 mod build;
+mod explain;
 mod field;
 mod flat;
 mod frame;
@@ -19,6 +20,7 @@ pub use bounds::bounds;
 pub use build::{
     BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, Stage, build, build_with_progress,
 };
+pub use explain::explain;
 pub use field::{FieldBody, FieldShape, Formula, Meshing, Offset};
 pub use print::print;
 pub use surface::{Explicit, SurfaceBody};

@@ -24,6 +24,7 @@ pub(super) fn value(
             let [begin, step, end] = [range.begin, range.step, range.end].map(number);
             out.push_str(&format!("[{begin} : {step} : {end}]"));
         }
+        Value::Formula(_) => out.push_str("formula"),
         Value::Function(closure) => {
             let mut printer = Printer { program, budget, out };
             printer.function(closure.function)?;

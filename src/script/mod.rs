@@ -55,6 +55,7 @@ mod eval;
 mod extent;
 mod facets;
 mod format;
+mod formula;
 mod heap;
 mod lexer;
 mod names;

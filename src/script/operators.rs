@@ -2,6 +2,7 @@
 
 use super::ast::{BinaryOp, UnaryOp};
 use super::budget::{Budget, Fault, Outcome, undefined};
+use super::formula;
 use super::value::{List, Value};
 use crate::math;
 use std::cmp::Ordering;
@@ -9,6 +10,7 @@ use std::cmp::Ordering;
 /// The value of `op operand`.
 pub(super) fn unary(op: UnaryOp, operand: &Value, budget: &mut Budget) -> Outcome {
     match (op, operand) {
+        (op, Value::Formula(expr)) => formula::unary(op, expr),
         (UnaryOp::Plus, value) => Ok(value.clone()),
         (UnaryOp::Not, value) => Ok(Value::Bool(!value.is_true())),
         (UnaryOp::Minus, Value::Number(value)) => Ok(Value::Number(-value)),
@@ -23,6 +25,9 @@ pub(super) fn unary(op: UnaryOp, operand: &Value, budget: &mut Budget) -> Outcom
 /// The value of `a op b`; `&&` and `||` are decided by their left side before they come here.
 pub(super) fn binary(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
     use BinaryOp as Op;
+    if let Some(outcome) = traced(op, a, b) {
+        return outcome;
+    }
     match op {
         Op::Or => Ok(Value::Bool(a.is_true() || b.is_true())),
         Op::And => Ok(Value::Bool(a.is_true() && b.is_true())),
@@ -38,6 +43,22 @@ pub(super) fn binary(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) ->
             _ => mismatch(op, a, b),
         },
         Op::BitOr | Op::BitAnd | Op::ShiftLeft | Op::ShiftRight => bits(op, a, b),
+    }
+}
+
+/// What there is to say of an operation where a formula is one of the operands; `None` for a formula and a list, and
+/// where there is no formula.
+fn traced(op: BinaryOp, a: &Value, b: &Value) -> Option<Outcome> {
+    if !matches!((a, b), (Value::Formula(_), _) | (_, Value::Formula(_))) {
+        return None;
+    }
+    match (formula::expr(a), formula::expr(b)) {
+        (Some(a), Some(b)) => Some(formula::binary(op, &a, &b)),
+        _ if matches!((a, b), (Value::List(_), _) | (_, Value::List(_))) => {
+            let elementwise = matches!(op, BinaryOp::Multiply | BinaryOp::Divide);
+            (!elementwise).then(|| mismatch(op, a, b))
+        }
+        _ => Some(mismatch(op, a, b)),
     }
 }
 
@@ -68,6 +89,9 @@ pub(super) fn equal(a: &Value, b: &Value, budget: &mut Budget) -> Result<bool, F
         (Value::Text(a), Value::Text(b)) => a.as_str() == b.as_str(),
         (Value::Range(a), Value::Range(b)) => a == b,
         (Value::Function(a), Value::Function(b)) => std::rc::Rc::ptr_eq(a, b),
+        (Value::Formula(_), _) | (_, Value::Formula(_)) => {
+            return undefined("whether coordinates are equal is not known");
+        }
         (Value::List(a), Value::List(b)) if a.len() == b.len() => {
             budget.spend(a.len() as u64)?;
             match (a.numbers(), b.numbers()) {
@@ -133,6 +157,9 @@ fn order(a: &Value, b: &Value, budget: &mut Budget) -> Result<Option<Option<Orde
 
 /// Sums and differences of numbers, and of lists element by element up to the end of the shorter.
 fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
+    if let Some(outcome) = traced(op, a, b) {
+        return outcome;
+    }
     let of_numbers = |a: f64, b: f64| if op == BinaryOp::Add { a + b } else { a - b };
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(of_numbers(*a, *b))),
@@ -150,12 +177,15 @@ fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
 }
 
 fn product(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
+    if let Some(outcome) = traced(BinaryOp::Multiply, a, b) {
+        return outcome;
+    }
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a * b)),
-        (Value::Number(_), Value::List(list)) => {
+        (Value::Number(_) | Value::Formula(_), Value::List(list)) => {
             each(list, budget, |value, budget| product(a, value, budget))
         }
-        (Value::List(list), Value::Number(_)) => {
+        (Value::List(list), Value::Number(_) | Value::Formula(_)) => {
             each(list, budget, |value, budget| product(value, b, budget))
         }
         (Value::List(a), Value::List(b)) => product_of_lists(a, b, budget),
@@ -168,6 +198,9 @@ fn product_of_lists(a: &List, b: &List, budget: &mut Budget) -> Outcome {
         return undefined("a product with an empty list is undefined");
     }
     budget.spend(a.len() as u64 + b.len() as u64)?;
+    if formula::is_in_list(a) || formula::is_in_list(b) {
+        return formula::product(a, b, budget);
+    }
     match (a.numbers(), b.numbers()) {
         (Some(a), Some(b)) => dot(a, b),
         (None, Some(vector)) => {
@@ -226,12 +259,15 @@ fn combination(weights: &[f64], rows: &[List]) -> Outcome {
 }
 
 fn quotient(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
+    if let Some(outcome) = traced(BinaryOp::Divide, a, b) {
+        return outcome;
+    }
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a / b)),
-        (Value::List(list), Value::Number(_)) => {
+        (Value::List(list), Value::Number(_) | Value::Formula(_)) => {
             each(list, budget, |value, budget| quotient(value, b, budget))
         }
-        (Value::Number(_), Value::List(list)) => {
+        (Value::Number(_) | Value::Formula(_), Value::List(list)) => {
             each(list, budget, |value, budget| quotient(a, value, budget))
         }
         _ => mismatch(BinaryOp::Divide, a, b),

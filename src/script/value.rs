@@ -2,6 +2,7 @@
 
 use super::ast::FunctionId;
 use super::heap;
+use crate::sdf::Expr;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -16,6 +17,8 @@ pub(super) enum Value {
     List(List),
     Range(Rc<Range>),
     Function(Rc<Closure>),
+    /// A number that depends on coordinates, while a function is traced.
+    Formula(Expr),
 }
 
 impl Value {
@@ -29,6 +32,7 @@ impl Value {
             Value::List(_) => "list",
             Value::Range(_) => "range",
             Value::Function(_) => "function",
+            Value::Formula(_) => "formula",
         }
     }
 
@@ -40,7 +44,7 @@ impl Value {
             Value::Number(value) => *value != 0.0,
             Value::Text(text) => !text.as_str().is_empty(),
             Value::List(list) => !list.is_empty(),
-            Value::Range(_) | Value::Function(_) => true,
+            Value::Range(_) | Value::Function(_) | Value::Formula(_) => true,
         }
     }
 

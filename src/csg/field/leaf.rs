@@ -1,8 +1,9 @@
 //! Fields as leaves.
 
+use crate::isosurface::{self, IsoError};
 use crate::math::{Aabb, Vec3};
 use crate::numeric::ContentHasher;
-use crate::sdf::{BadNumber, Binary, Expr, Implicit, Operation, Periodic, Primitive, Unary};
+use crate::sdf::{BadNumber, Binary, Expr, Field, Implicit, Operation, Periodic, Primitive, Range, Unary};
 
 /// A solid as the inside of a field.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,6 +91,41 @@ impl PartialEq for Formula {
     fn eq(&self, other: &Formula) -> bool {
         self.operations == other.operations
     }
+}
+
+impl FieldShape {
+    /// A box outside of which a formula is proven not to be negative; empty where there is no inside.
+    ///
+    /// # Errors
+    /// [`IsoError::Unbounded`] where there is no such box, or no proof.
+    pub fn bounds_of(formula: &Formula) -> Result<Aabb, IsoError> {
+        let field = formula.expr.compile();
+        let found = isosurface::find_bounds(&field)?;
+        Ok(if found.is_empty() { found } else { (0..6).fold(found, |found, side| cut(&field, found, side)) })
+    }
+}
+
+/// The box without the slabs at one of its sides that are proven to be outside; a 64th of it is the thinnest tried.
+fn cut(field: &dyn Field, mut bounds: Aabb, side: usize) -> Aabb {
+    let (axis, upper) = (side % 3, side >= 3);
+    let mut step = 0.5 * bounds.size()[axis];
+    for _ in 0..6 {
+        let mut slab = bounds;
+        if upper {
+            slab.min[axis] = slab.max[axis] - step;
+        } else {
+            slab.max[axis] = slab.min[axis] + step;
+        }
+        if field.range(slab).is_some_and(Range::is_outside) {
+            if upper {
+                bounds.max[axis] = slab.min[axis];
+            } else {
+                bounds.min[axis] = slab.max[axis];
+            }
+        }
+        step *= 0.5;
+    }
+    bounds
 }
 
 impl FieldBody {

@@ -3,9 +3,10 @@
 use super::primitive::{numbers, radius, unusable};
 use super::{Builtin, module_row};
 use crate::boolean::Op;
-use crate::csg::{self, Body, Csg, FieldBody, FieldShape, Offset};
+use crate::csg::{self, Body, Csg, FieldBody, FieldShape, Formula, Offset};
 use crate::math::{Aabb, Vec3};
 use crate::script::Failure;
+use crate::script::formula;
 use crate::script::eval::{Fragmentation, Invocation, Machine, Made};
 use crate::script::value::{List, Value};
 use crate::sdf::{Blend, Periodic, Primitive};
@@ -175,6 +176,13 @@ pub(super) const TABLE: &[Builtin] = &[
         2,
         "Soft balls [[x, y, z], radius, weight] that flow into each other where their sum exceeds threshold.",
         metaballs,
+    ),
+    module_row(
+        "implicit",
+        &["f", "bounds", "tolerance"],
+        2,
+        "Where a function of a point is negative, cut off at the box bounds; the function must be traceable.",
+        implicit,
     ),
 ];
 
@@ -440,4 +448,42 @@ pub(super) fn bounds<'p>(
         unusable(machine, call, "bounds", &given, "two corners [[x, y, z], [x, y, z]], the lower one first")?;
     }
     Ok(bounds)
+}
+
+fn implicit<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Made, Failure> {
+    let value = call.arguments.get("f").cloned().unwrap_or_default();
+    let Value::Function(closure) = value else {
+        unusable(machine, call, "f", &value, "a function of a point, such as function(p) norm(p) - 1")?;
+        return Ok(machine.nothing());
+    };
+    let given = match call.arguments.get("bounds") {
+        None => None,
+        Some(_) => match bounds(machine, call)? {
+            None => return Ok(machine.nothing()),
+            some => some,
+        },
+    };
+    let traced = machine.traced(&closure, call.span)?;
+    let expr = match &traced {
+        Value::Number(_) | Value::Formula(_) => formula::expr(&traced),
+        _ => None,
+    };
+    let Some(formula) = expr.and_then(Formula::new) else {
+        let shown = machine.shown_value(&traced, call.span)?;
+        return Err(machine.error(call.span, format!("the function must give a number, not {shown}")));
+    };
+    let bounds = match given {
+        Some(bounds) => bounds,
+        None => match FieldShape::bounds_of(&formula) {
+            Ok(bounds) => bounds,
+            Err(error) => {
+                return Err(machine.error(call.span, format!("where this ends is not known: {error}")));
+            }
+        },
+    };
+    if bounds.is_empty() {
+        machine.warn(call.span, "the function is nowhere negative; this gives nothing");
+        return Ok(machine.nothing());
+    }
+    leaf(machine, call, FieldShape::Formula { formula, bounds })
 }

@@ -51,23 +51,30 @@ impl<'p> Machine<'p> {
             Expr::Unary { op, operand } => {
                 let operand = self.eval(*operand, frame)?;
                 let outcome = operators::unary(*op, &operand, &mut self.session.budget);
-                self.settle(outcome, program.span(id))
+                self.settle_traced(outcome, &[operand], program.span(id))
             }
             Expr::Conditional { condition, then, otherwise } => {
-                let chosen = if self.eval(*condition, frame)?.is_true() { then } else { otherwise };
+                let chosen = match self.eval(*condition, frame)? {
+                    Value::Formula(condition) => {
+                        return self.either(&condition, *then, *otherwise, id, frame);
+                    }
+                    condition if condition.is_true() => then,
+                    _ => otherwise,
+                };
                 self.eval(*chosen, frame)
             }
             Expr::Call(call) => self.call(call, id, frame),
             Expr::Index { list, index } => {
                 let list = self.eval(*list, frame)?;
                 let index = self.eval(*index, frame)?;
+                self.refuse_formula(&index, "an index", program.span(id))?;
                 Ok(element(&list, &index))
             }
             Expr::Member { object, name } => {
                 let object = self.eval(*object, frame)?;
                 Ok(member(&object, program.names.text(*name)))
             }
-            Expr::Range { begin, step, end } => self.range(*begin, *step, *end, frame),
+            Expr::Range { begin, step, end } => self.range(*begin, *step, *end, id, frame),
             Expr::Let(inner) => self.in_let(inner, frame, |machine, frame| machine.eval(inner.body, frame)),
             Expr::Assert { arguments, body } => {
                 self.assert(arguments, program.span(id), frame)?;
@@ -164,6 +171,7 @@ impl<'p> Machine<'p> {
     ) -> Result<Value, Failure> {
         let a = self.eval(left, frame)?;
         match op {
+            _ if matches!(a, Value::Formula(_)) => {}
             BinaryOp::And if !a.is_true() => return Ok(Value::Bool(false)),
             BinaryOp::Or if a.is_true() => return Ok(Value::Bool(true)),
             _ => {}
@@ -181,7 +189,7 @@ impl<'p> Machine<'p> {
             }
         }
         let outcome = operators::binary(op, &a, &b, &mut self.session.budget);
-        self.settle(outcome, self.program.span(id))
+        self.settle_traced(outcome, &[a, b], self.program.span(id))
     }
 
     fn range(
@@ -189,11 +197,15 @@ impl<'p> Machine<'p> {
         begin: ExprId,
         step: Option<ExprId>,
         end: ExprId,
+        id: ExprId,
         frame: &Rc<Frame>,
     ) -> Result<Value, Failure> {
         let begin = self.eval(begin, frame)?;
         let step = step.map_or(Ok(Value::Number(1.0)), |step| self.eval(step, frame))?;
         let end = self.eval(end, frame)?;
+        for value in [&begin, &step, &end] {
+            self.refuse_formula(value, "an end of a range", self.program.span(id))?;
+        }
         Ok(match (begin, step, end) {
             (Value::Number(begin), Value::Number(step), Value::Number(end)) => {
                 Value::Range(Rc::new(Range { begin, step, end }))
@@ -269,7 +281,7 @@ impl<'p> Machine<'p> {
             return Err(self.error(span, "assert needs a condition"));
         };
         let message = named("message").or_else(|| unnamed.next());
-        if self.eval(condition.value, frame)?.is_true() {
+        if self.decided(condition.value, frame)? {
             return Ok(());
         }
         let place = self.program.span(condition.value);
