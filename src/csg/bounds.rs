@@ -1,6 +1,6 @@
 use super::arena::{Arena, Node};
-use super::frame::{mapped_box, overlap, plane_part, widened};
 use super::field;
+use super::frame::{mapped_box, overlap, plane_part, widened};
 use super::{Body, Csg, Dimension, Flat, LinearSweep, RotateSweep};
 use crate::boolean::Op;
 use crate::math::{Aabb, Vec2, Vec3};

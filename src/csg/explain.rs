@@ -129,6 +129,7 @@ impl Teller<'_, '_> {
                 let sort = if field.is_exact_inside() { "exact distance" } else { "bound of the distance" };
                 format!("{of}: {sort}, by formula{}", if round { ", truly round" } else { "" })
             }
+            Way::Extruded => format!("{of}: exact distance from its outline"),
             Way::Solved => format!("{of}: distance from its mesh"),
             Way::Remeshed => "its formula is only a bound of the distance, so meshed first".to_owned(),
             Way::Sharp(Op::Union) => format!("{of}: minimum of fields"),

@@ -73,7 +73,7 @@ impl Solver<'_, '_> {
     }
 
     /// The region of a plane recipe in its own coordinates, made once; empty for a solid, with a note.
-    fn region(&mut self, node: NodeId) -> Result<Arc<Region>, BuildError> {
+    pub(super) fn region(&mut self, node: NodeId) -> Result<Arc<Region>, BuildError> {
         let (key, dimension) = (self.arena.get(node).key, self.arena.get(node).dimension);
         if dimension == Some(Dimension::Three) {
             self.report.note(Note::MixedDimensions);

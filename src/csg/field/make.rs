@@ -32,6 +32,9 @@ struct Made {
 /// Most tetrahedra of a meshing: about a gigabyte.
 const MOST_CELLS: u64 = 4_000_000;
 
+/// Most edges of an outline: a point looks at all of them, and at a mesh in about the time of two hundred.
+const MOST_EDGES: usize = 200;
+
 /// A mesh has about so many tetrahedra a triangle, at most.
 const CELLS_A_TRIANGLE: u64 = 16;
 
@@ -71,6 +74,7 @@ impl Solver<'_, '_> {
                 let solid = self.solved(plan.node)?;
                 Ok(Made { field: distance(&solid)?, error: 0.0 })
             }
+            Way::Extruded => Ok(Made { field: self.extruded(plan.node)?, error: 0.0 }),
             Way::Remeshed => {
                 let part = self.field(&plan.parts[0], 0.5 * tolerance)?;
                 let rest = 0.5 * tolerance - part.error;
@@ -80,7 +84,10 @@ impl Solver<'_, '_> {
             Way::Moved(map) => {
                 let stretch = greatest_stretch(map.matrix3);
                 let part = self.field(&plan.parts[0], tolerance / stretch)?;
-                Ok(Made { field: composed(&plan.way, &[part.field])?, error: part.error * stretch })
+                Ok(Made {
+                    field: composed(&plan.way, &[part.field], &plan.parts)?,
+                    error: part.error * stretch,
+                })
             }
             way => {
                 // Where gradients agree, a blend adds up the errors of both.
@@ -90,9 +97,27 @@ impl Solver<'_, '_> {
                 let parts = parts?;
                 let error = parts.iter().map(|part| part.error).fold(0.0, f64::max) / share;
                 let fields: Vec<Implicit> = parts.into_iter().map(|part| part.field).collect();
-                Ok(Made { field: composed(way, &fields)?, error })
+                Ok(Made { field: composed(way, &fields, &plan.parts)?, error })
             }
         }
+    }
+
+    /// The distance from an extrusion that goes straight up: by its outline, or by its mesh where that is long.
+    fn extruded(&mut self, node: NodeId) -> Result<Implicit, BuildError> {
+        let of = self.arena.get(node);
+        let Csg::LinearExtrude { sweep, .. } = of.recipe else { unreachable!("only extrusions are made so") };
+        let region = self.region(of.children[0])?;
+        let edges: usize = region.contours().iter().map(Vec::len).sum();
+        if edges > MOST_EDGES {
+            return distance(&self.solved(node)?);
+        }
+        if edges == 0 {
+            return Ok(Implicit::nothing());
+        }
+        let height = sweep.vector.z;
+        let middle = if sweep.center { 0.0 } else { 0.5 * height };
+        let field = Implicit::polygon(region.contours())?.extrude(0.5 * height.abs())?;
+        Ok(if middle == 0.0 { field } else { field.translate(Vec3::new(0.0, 0.0, middle))? })
     }
 
     /// The solid of a node in its own coordinates.
@@ -120,8 +145,7 @@ impl Solver<'_, '_> {
         }
         let known = Implicit::formula(field.expr().clone(), field.lipschitz(), margined(room));
         let most_cells = MOST_CELLS.min(self.max_triangles().saturating_mul(CELLS_A_TRIANGLE)) as usize;
-        let options =
-            Options { bounds: cut.then_some(bounds), most_cells, ..Options::new(tolerance) };
+        let options = Options { bounds: cut.then_some(bounds), most_cells, ..Options::new(tolerance) };
         let meshed = isosurface::mesh_with_progress(&known.tape(), &options, &mut |stage| {
             self.show(Stage::Fields(stage));
         });

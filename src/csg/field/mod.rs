@@ -3,6 +3,7 @@
 //! Sharp booleans at the top of a recipe are those of meshes, exact and cheap. What only fields can do is done by fields,
 //! each meshed by itself to its own tolerance.
 
+mod flush;
 mod leaf;
 mod make;
 pub(super) mod plan;

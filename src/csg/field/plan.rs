@@ -5,11 +5,12 @@
 //! side that matters, it is meshed first, and the distance from that mesh taken.
 
 use super::Offset;
+use super::flush::{self, Place};
 use crate::boolean::Op;
 use crate::csg::arena::{Arena, Node, NodeId};
 use crate::csg::build::{BuildError, Note, Report};
-use crate::csg::{Body, Csg, Dimension};
-use crate::math::{Aabb, Affine3, Vec3};
+use crate::csg::{Body, Csg, Dimension, LinearSweep};
+use crate::math::{Aabb, Affine3, Vec2, Vec3};
 use crate::sdf::{BadNumber, Blend, Expr, Implicit, Primitive, greatest_stretch};
 
 /// A field to be made.
@@ -22,6 +23,8 @@ pub(in crate::csg) struct FieldPlan {
     pub(in crate::csg) bounds: Aabb,
     /// The field itself, or, where meshes are still to be made, something with the same promises.
     promise: Implicit,
+    /// The boxes of the shapes in it, and where they stand.
+    places: Vec<Place>,
     /// Whether no mesh is needed.
     pub(in crate::csg) is_formula: bool,
 }
@@ -30,6 +33,8 @@ pub(in crate::csg) struct FieldPlan {
 pub(in crate::csg) enum Way {
     /// By the formula of a primitive.
     Formula(Implicit),
+    /// By the distance from the outline of an extrusion that goes straight up.
+    Extruded,
     /// By the distance from the mesh of the recipe.
     Solved,
     /// By the distance from a mesh of the one part's surface.
@@ -63,14 +68,14 @@ pub(in crate::csg) fn plan(
     Planner { arena, report }.place(node, 0)
 }
 
-/// The field that a way makes of its parts; meshes are made by whoever can.
-pub(super) fn composed(way: &Way, parts: &[Implicit]) -> Result<Implicit, BadNumber> {
+/// The field that a way makes of its parts, and of plans for them; meshes are made by whoever can.
+pub(super) fn composed(way: &Way, parts: &[Implicit], plans: &[FieldPlan]) -> Result<Implicit, BadNumber> {
     match way {
         Way::Formula(field) => Ok(field.clone()),
-        Way::Solved | Way::Remeshed => Ok(parts[0].clone()),
+        Way::Extruded | Way::Solved | Way::Remeshed => Ok(parts[0].clone()),
         Way::Moved(map) => parts[0].transform(map),
-        Way::Sharp(op) => joined(*op, None, parts),
-        Way::Smooth(op, blend) => joined(*op, Some(*blend), parts),
+        Way::Sharp(op) => joined(*op, None, parts, plans),
+        Way::Smooth(op, blend) => joined(*op, Some(*blend), parts, plans),
         Way::Shifted(Offset::By(distance)) => parts[0].offset(*distance),
         Way::Shifted(Offset::Shell(thickness)) => parts[0].shell(*thickness),
         Way::Shifted(Offset::Round(radius)) => parts[0].round(*radius),
@@ -78,7 +83,12 @@ pub(super) fn composed(way: &Way, parts: &[Implicit]) -> Result<Implicit, BadNum
 }
 
 /// A boolean of fields: unions and intersections as balanced trees, differences one after the other.
-fn joined(op: Op, blend: Option<Blend>, parts: &[Implicit]) -> Result<Implicit, BadNumber> {
+fn joined(
+    op: Op,
+    blend: Option<Blend>,
+    parts: &[Implicit],
+    plans: &[FieldPlan],
+) -> Result<Implicit, BadNumber> {
     let two = |a: &Implicit, b: &Implicit| match (op, blend) {
         (Op::Union, None) => Ok(a.union(b)),
         (Op::Intersection, None) => Ok(a.intersection(b)),
@@ -95,11 +105,21 @@ fn joined(op: Op, blend: Option<Blend>, parts: &[Implicit]) -> Result<Implicit, 
         (_, []) => Ok(Implicit::nothing()),
         (_, [one]) => Ok(one.clone()),
         (Op::Union | Op::Intersection, more) => {
-            let (left, right) = more.split_at(more.len() / 2);
-            two(&joined(op, blend, left)?, &joined(op, blend, right)?)
+            let middle = more.len() / 2;
+            let (left, right) = more.split_at(middle);
+            let (below, above) = plans.split_at(middle);
+            let both = two(&joined(op, blend, left, below)?, &joined(op, blend, right, above)?)?;
+            if op == Op::Union && blend.is_some() {
+                return flush::cut(both, &places(below), &places(above));
+            }
+            Ok(both)
         }
         (_, [first, rest @ ..]) => rest.iter().try_fold(first.clone(), |all, part| two(&all, part)),
     }
+}
+
+fn places(plans: &[FieldPlan]) -> Vec<Place> {
+    plans.iter().flat_map(|plan| plan.places.iter().copied()).collect()
 }
 
 struct Planner<'a, 'b> {
@@ -123,6 +143,9 @@ impl Planner<'_, '_> {
             Csg::Offset { how, .. } => {
                 let child = self.place(node.children[0], depth + 1)?;
                 child.map(|child| self.offset(inner, *how, child)).transpose()?
+            }
+            Csg::LinearExtrude { sweep, .. } if goes_straight_up(sweep) => {
+                Some(self.step(Way::Extruded, Vec::new(), inner)?)
             }
             _ => Some(self.leaf(inner)?),
         };
@@ -220,20 +243,21 @@ impl Planner<'_, '_> {
         let own = self.arena.get(node).bounds;
         let promises: Vec<Implicit> = match way {
             // The distance from a solid: exact on both sides.
-            Way::Solved | Way::Remeshed => {
+            Way::Extruded | Way::Solved | Way::Remeshed => {
                 let bounds = parts.first().map_or(own, |part| part.bounds);
                 vec![Implicit::formula(Expr::constant(1.0), Some(1.0), bounds).with_exactness(true, true)]
             }
             _ => parts.iter().map(|part| part.promise.clone()).collect(),
         };
-        let promise = composed(&way, &promises)?;
+        let promise = composed(&way, &promises, &parts)?;
         let bounds = match way {
             Way::Remeshed => parts[0].bounds,
             _ => own,
         };
-        let meshed = matches!(way, Way::Solved | Way::Remeshed);
+        let meshed = matches!(way, Way::Extruded | Way::Solved | Way::Remeshed);
         let is_formula = !meshed && parts.iter().all(|part| part.is_formula);
-        Ok(FieldPlan { way, parts, node, bounds, promise, is_formula })
+        let places = places_of(&way, &parts, bounds);
+        Ok(FieldPlan { way, parts, node, bounds, promise, places, is_formula })
     }
 }
 
@@ -253,6 +277,27 @@ impl FieldPlan {
             _ => false,
         }
     }
+}
+
+/// The boxes of the shapes in a plan.
+fn places_of(way: &Way, parts: &[FieldPlan], bounds: Aabb) -> Vec<Place> {
+    match way {
+        Way::Formula(_) | Way::Extruded | Way::Solved => vec![(bounds, Affine3::IDENTITY)],
+        Way::Moved(map) => parts[0].places.iter().map(|(bounds, own)| (*bounds, *map * *own)).collect(),
+        Way::Remeshed | Way::Shifted(Offset::Round(_)) => parts[0].places.clone(),
+        Way::Shifted(_) => vec![(bounds, Affine3::IDENTITY)],
+        // What is left of the first, or within it.
+        Way::Sharp(Op::Difference | Op::Intersection) | Way::Smooth(Op::Difference | Op::Intersection, _) => {
+            parts[0].places.clone()
+        }
+        Way::Sharp(_) | Way::Smooth(..) => places(parts),
+    }
+}
+
+/// Whether an extrusion is its outline times an interval.
+fn goes_straight_up(sweep: &LinearSweep) -> bool {
+    let LinearSweep { vector, twist, scale, .. } = sweep;
+    vector.x == 0.0 && vector.y == 0.0 && vector.z != 0.0 && *twist == 0.0 && *scale == Vec2::ONE
 }
 
 fn is_rigid(map: &Affine3) -> bool {

@@ -115,7 +115,8 @@ fn corners(Aabb { min, max }: Aabb) -> String {
 /// A function whose variables are the operations in order. Angles of the language are degrees.
 fn function(formula: &Formula) -> String {
     let operations = formula.operations();
-    let bindings = operations.iter().enumerate().map(|(id, operation)| format!("a{id} = {}", term(operation)));
+    let bindings =
+        operations.iter().enumerate().map(|(id, operation)| format!("a{id} = {}", term(operation)));
     let bindings: Vec<String> = bindings.collect();
     format!("function(p) let({}) a{}", bindings.join(", "), operations.len().saturating_sub(1))
 }

@@ -6,8 +6,8 @@ use crate::boolean::Op;
 use crate::csg::{self, Body, Csg, FieldBody, FieldShape, Formula, Offset};
 use crate::math::{Aabb, Vec3};
 use crate::script::Failure;
-use crate::script::formula;
 use crate::script::eval::{Fragmentation, Invocation, Machine, Made};
+use crate::script::formula;
 use crate::script::value::{List, Value};
 use crate::sdf::{Blend, Periodic, Primitive};
 use std::sync::Arc;
@@ -155,21 +155,31 @@ pub(super) const TABLE: &[Builtin] = &[
         "A prism over a regular polygon of n corners at a distance of r from the z axis, centred.",
         prism,
     ),
-    periodic_row("sdf_gyroid", "The part of a gyroid in a box: a wall of a thickness, or all on one side.", |m, c| {
-        periodic(m, c, Periodic::Gyroid)
-    }),
-    periodic_row("sdf_schwarz_p", "The part of Schwarz's P surface in a box: a wall, or all on one side.", |m, c| {
-        periodic(m, c, Periodic::SchwarzP)
-    }),
-    periodic_row("sdf_diamond", "The part of Schwarz's D surface in a box: a wall, or all on one side.", |m, c| {
-        periodic(m, c, Periodic::Diamond)
-    }),
-    periodic_row("sdf_neovius", "The part of Neovius' surface in a box: a wall, or all on one side.", |m, c| {
-        periodic(m, c, Periodic::Neovius)
-    }),
-    periodic_row("sdf_iwp", "The part of Schoen's I-WP surface in a box: a wall, or all on one side.", |m, c| {
-        periodic(m, c, Periodic::Iwp)
-    }),
+    periodic_row(
+        "sdf_gyroid",
+        "The part of a gyroid in a box: a wall of a thickness, or all on one side.",
+        |m, c| periodic(m, c, Periodic::Gyroid),
+    ),
+    periodic_row(
+        "sdf_schwarz_p",
+        "The part of Schwarz's P surface in a box: a wall, or all on one side.",
+        |m, c| periodic(m, c, Periodic::SchwarzP),
+    ),
+    periodic_row(
+        "sdf_diamond",
+        "The part of Schwarz's D surface in a box: a wall, or all on one side.",
+        |m, c| periodic(m, c, Periodic::Diamond),
+    ),
+    periodic_row(
+        "sdf_neovius",
+        "The part of Neovius' surface in a box: a wall, or all on one side.",
+        |m, c| periodic(m, c, Periodic::Neovius),
+    ),
+    periodic_row(
+        "sdf_iwp",
+        "The part of Schoen's I-WP surface in a box: a wall, or all on one side.",
+        |m, c| periodic(m, c, Periodic::Iwp),
+    ),
     module_row(
         "sdf_metaballs",
         &["balls", "threshold", "tolerance"],

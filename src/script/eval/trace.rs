@@ -84,7 +84,11 @@ impl Machine<'_> {
     /// The value of a builtin of which some arguments are formulas; `None` where it is to be called.
     pub(super) fn traced_call(&self, name: &str, base: usize) -> Option<Value> {
         let arguments = &self.stack[base..];
-        if self.tracing && arguments.iter().any(formula::is_in) { formula::call(name, arguments) } else { None }
+        if self.tracing && arguments.iter().any(formula::is_in) {
+            formula::call(name, arguments)
+        } else {
+            None
+        }
     }
 
     /// An error where a builtin makes nothing of arguments since they depend on coordinates.
