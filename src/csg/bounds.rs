@@ -47,7 +47,7 @@ pub(super) fn local_bounds(recipe: &Csg, dimension: Option<Dimension>, children:
         Csg::Blend { .. } | Csg::Offset { .. } => {
             let solid = |child: &&&Node<'_>| child.dimension != Some(Dimension::Two);
             let taking_part: Vec<&Node<'_>> = children.iter().filter(solid).copied().collect();
-            proper(field::plan::bounds(recipe, &taking_part).0)
+            proper(padded(field::plan::bounds(recipe, &taking_part).0, recipe_tolerance(recipe)))
         }
     }
 }
@@ -79,7 +79,22 @@ fn body_bounds(body: &Body) -> Aabb {
         }
         Body::Mesh(mesh) => mesh.bounds(),
         Body::Surface(surface) => surface.bounds(),
-        Body::Field(field) => proper(field.bounds()),
+        Body::Field(field) => proper(padded(field.bounds(), field.tolerance)),
+    }
+}
+
+/// The box of a mesh that may be this far from its surface.
+fn padded(bounds: Aabb, tolerance: f64) -> Aabb {
+    if bounds.is_empty() {
+        return bounds;
+    }
+    Aabb { min: bounds.min - Vec3::splat(tolerance), max: bounds.max + Vec3::splat(tolerance) }
+}
+
+fn recipe_tolerance(recipe: &Csg) -> f64 {
+    match recipe {
+        Csg::Blend { tolerance, .. } | Csg::Offset { tolerance, .. } => *tolerance,
+        _ => 0.0,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::arena::{Arena, NodeId};
 use super::build::{BuildError, Report};
+use super::field::Direct;
 use super::field::plan::{FieldPlan, Way};
 use super::field::print::periodic_name;
 use super::field::{self, FieldShape, Offset};
@@ -99,7 +100,11 @@ impl Teller<'_, '_> {
         let text = match recipe {
             Csg::Body(Body::Mesh(_)) => format!("{of}: as it is"),
             Csg::Body(Body::Surface(surface)) => format!("{of}: mesh within {}", surface.tolerance),
-            Csg::Body(Body::Field(field)) => format!("{of}: field, meshed within {}", field.tolerance),
+            Csg::Body(Body::Field(field)) => match field.direct() {
+                None => format!("{of}: field, meshed within {}", field.tolerance),
+                Some(Direct::Rings { .. }) => format!("{of}: mesh within {}", field.tolerance),
+                Some(_) => format!("{of}: mesh"),
+            },
             Csg::Blend { tolerance, .. } | Csg::Offset { tolerance, .. } => {
                 let Some(plan) = field::plan::plan(self.arena, node, self.report)? else {
                     return Ok(Line { text: format!("{of}: nothing"), below: Vec::new() });

@@ -41,6 +41,10 @@ const CELLS_A_TRIANGLE: u64 = 16;
 impl Solver<'_, '_> {
     /// The mesh of a field that is a leaf.
     pub(in crate::csg) fn field_leaf(&mut self, body: &FieldBody) -> Result<Leaf, BuildError> {
+        if let Some(direct) = body.direct() {
+            self.check_limit(direct.triangles())?;
+            return Ok(Leaf::of(direct.solid()?));
+        }
         let field = body.implicit()?;
         let (bounds, cut) = (body.bounds(), body.cut());
         if bounds.is_empty() {

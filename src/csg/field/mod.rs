@@ -3,12 +3,14 @@
 //! Sharp booleans at the top of a recipe are those of meshes, exact and cheap. What only fields can do is done by fields,
 //! each meshed by itself to its own tolerance.
 
+mod direct;
 mod flush;
 mod leaf;
 mod make;
 pub(super) mod plan;
 pub(super) mod print;
 
+pub(super) use direct::Direct;
 pub use leaf::{FieldBody, FieldShape, Formula};
 pub use make::Meshing;
 

@@ -256,7 +256,11 @@ impl Planner<'_, '_> {
         };
         let meshed = matches!(way, Way::Extruded | Way::Solved | Way::Remeshed);
         let is_formula = !meshed && parts.iter().all(|part| part.is_formula);
-        let places = places_of(&way, &parts, bounds);
+        let places = match self.arena.get(node).recipe {
+            // Without the margin for its own mesh.
+            Csg::Body(Body::Field(field)) => vec![(field.bounds(), Affine3::IDENTITY)],
+            _ => places_of(&way, &parts, bounds),
+        };
         Ok(FieldPlan { way, parts, node, bounds, promise, places, is_formula })
     }
 }
@@ -358,7 +362,7 @@ pub(in crate::csg) fn bounds(recipe: &Csg, children: &[&Node<'_>]) -> (Aabb, f64
         Csg::Blend { op: Op::Difference, .. } => {
             children.first().map_or((Aabb::EMPTY, 1.0), |first| (first.bounds, first.swell))
         }
-        Csg::Offset { how, tolerance, .. } => {
+        Csg::Offset { how, .. } => {
             let Some(child) = parts().next() else { return (Aabb::EMPTY, 1.0) };
             let around = |by: f64| Aabb {
                 min: child.bounds.min - Vec3::splat(by),
@@ -366,10 +370,9 @@ pub(in crate::csg) fn bounds(recipe: &Csg, children: &[&Node<'_>]) -> (Aabb, f64
             };
             match how {
                 Offset::By(distance) if *distance <= 0.0 => (child.bounds, child.swell),
-                // From a mesh that may be this far off.
-                Offset::By(distance) => (around(distance + tolerance), 1.0),
-                Offset::Shell(thickness) => (around(0.5 * thickness + tolerance), 1.0),
-                Offset::Round(_) => (around(*tolerance), child.swell),
+                Offset::By(distance) => (around(*distance), 1.0),
+                Offset::Shell(thickness) => (around(0.5 * thickness), 1.0),
+                Offset::Round(_) => (child.bounds, child.swell),
             }
         }
         _ => unreachable!("only smooth operators are asked for"),
