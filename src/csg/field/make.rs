@@ -35,6 +35,9 @@ const MOST_CELLS: u64 = 4_000_000;
 /// Most edges of an outline: a point looks at all of them, and at a mesh in about the time of two hundred.
 const MOST_EDGES: usize = 200;
 
+/// Largest tolerance as a part of the size of the shape.
+const COARSEST: f64 = 1.0 / 16.0;
+
 /// A mesh has about so many tetrahedra a triangle, at most.
 const CELLS_A_TRIANGLE: u64 = 16;
 
@@ -147,6 +150,8 @@ impl Solver<'_, '_> {
         if room.is_empty() {
             return Ok(Solid::default());
         }
+        // What is larger than a part of the shape itself would say nothing of it.
+        let tolerance = tolerance.min(COARSEST * room.size().max_element());
         let known = Implicit::formula(field.expr().clone(), field.lipschitz(), margined(room));
         let most_cells = MOST_CELLS.min(self.max_triangles().saturating_mul(CELLS_A_TRIANGLE)) as usize;
         let options = Options { bounds: cut.then_some(bounds), most_cells, ..Options::new(tolerance) };
