@@ -75,15 +75,16 @@ fn call_by_call(tree: &Tree, operands: &[&Mesh]) -> Result<Mesh, String> {
                 let first = parts.next().expect("there are some")?;
                 parts.try_fold(first, |so_far, part| {
                     let pair = boolean::evaluate(&Tree::flat(*op, 2), &[&so_far, &part?]);
-                    pair.map(|combined| {
-                        if std::env::var("SETTLE").is_ok() {
-                            combined.solid.settled()
-                        } else {
-                            combined.solid
-                        }
-                    })
-                    .map_err(|error| error.to_string())
+                    pair.map(|combined| combined.solid).map_err(|error| error.to_string())
                 })
+            }
+            Tree::AtLeast(least, parts) => {
+                let parts: Result<Vec<Solid>, String> =
+                    parts.iter().map(|part| solid_of(part, operands)).collect();
+                let (parts, tree) =
+                    (parts?, |count| Tree::AtLeast(*least, (0..count).map(Tree::Leaf).collect()));
+                let combined = boolean::evaluate(&tree(parts.len()), &parts.iter().collect::<Vec<_>>());
+                combined.map(|combined| combined.solid).map_err(|error| error.to_string())
             }
         }
     }

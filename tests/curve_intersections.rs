@@ -157,7 +157,7 @@ fn judge(pair: &[Points; 2]) -> (Option<String>, f64) {
     match truth(pair) {
         Truth::Meetings(mut expected) => {
             // What runs together within rounding is one overlap, whatever crosses in the last digits.
-            if let Some(wrong) = overlaps_are_wrong(&a, &b, &found) {
+            if let Some(wrong) = places_are_apart(&a, &b, &found) {
                 return (Some(wrong), 0.0);
             }
             expected.retain(|(s, t, _)| !found.iter().any(|m| is_in_overlap(m, *s, *t)));
@@ -179,9 +179,12 @@ fn judge(pair: &[Points; 2]) -> (Option<String>, f64) {
                 }
             }
             let missed = (!expected.is_empty()).then(|| format!("missed {expected:?}, found {found:?}"));
-            (missed, worst)
+            (missed.or_else(|| overlaps_are_wrong(&a, &b, &found, reaches_an_end)), worst)
         }
-        Truth::SameCurve => (overlaps_are_wrong(&a, &b, &found), 0.0),
+        Truth::SameCurve => {
+            let apart = places_are_apart(&a, &b, &found);
+            (apart.or_else(|| overlaps_are_wrong(&a, &b, &found, |_, _| true)), 0.0)
+        }
         Truth::Point => (None, 0.0),
     }
 }
@@ -204,23 +207,58 @@ fn kind_is_right(a: &Cubic<Vec2>, b: &Cubic<Vec2>, m: &Meeting, multiplicity: us
     }
 }
 
-/// Samples of the first curve are on the second one just where overlaps say so.
-fn overlaps_are_wrong(a: &Cubic<Vec2>, b: &Cubic<Vec2>, found: &[Meeting]) -> Option<String> {
-    for m in found {
-        for k in 0..2 {
-            let off = (a.eval(m.first[k]) - b.eval(m.second[k])).length();
-            if off > 1e-12 * 64.0 {
-                return Some(format!("{m:?} is off by {off}"));
-            }
-        }
-    }
-    (0..=64).map(|k| (f64::from(k) + 0.37) / 65.0).find_map(|s| {
-        let distance = ogee::curve::nearest(b, a.eval(s)).unwrap().distance.value;
+/// The two places of a meeting are one point.
+fn places_are_apart(a: &Cubic<Vec2>, b: &Cubic<Vec2>, found: &[Meeting]) -> Option<String> {
+    let apart = |m: &Meeting, k: usize| (a.eval(m.first[k]) - b.eval(m.second[k])).length();
+    let mut places = found.iter().flat_map(|m| [(m, apart(m, 0)), (m, apart(m, 1))]);
+    places.find(|(_, off)| *off > TOGETHER * 64.0).map(|(m, off)| format!("{m:?} is off by {off}"))
+}
+
+/// Distances below it are those of curves that run together within rounding, or near a touch.
+const TOGETHER: f64 = 1e-12;
+
+/// A sample of the first curve: its parameter, its distance from the second, and the parameter of the nearest.
+struct Sample {
+    s: f64,
+    distance: f64,
+    t: f64,
+}
+
+/// Samples of the first curve are on the second one just where overlaps say so, of those that `counts` lets count.
+fn overlaps_are_wrong(
+    a: &Cubic<Vec2>,
+    b: &Cubic<Vec2>,
+    found: &[Meeting],
+    counts: fn(&[Sample], usize) -> bool,
+) -> Option<String> {
+    let sample = |k: u32| {
+        let s = (f64::from(k) + 0.37) / 65.0;
+        let nearest = ogee::curve::nearest(b, a.eval(s)).unwrap();
+        Sample { s, distance: nearest.distance.value, t: nearest.t }
+    };
+    let samples: Vec<Sample> = (0..=64).map(sample).collect();
+    samples.iter().enumerate().find_map(|(k, &Sample { s, distance, .. })| {
         let inside = found.iter().any(|m| m.contact == Contact::Overlap && m.first[0] < s && s < m.first[1]);
         let near_end = found.iter().any(|m| m.first.iter().any(|end| (end - s).abs() < 1e-3));
-        let wrong = if inside { distance > 1e-12 * 64.0 } else { distance < 1e-12 && !near_end };
+        let wrong = if inside {
+            distance > TOGETHER * 64.0
+        } else {
+            distance < TOGETHER && !near_end && counts(&samples, k)
+        };
         wrong.then(|| format!("at {s}: {distance} from the other, found {found:?}"))
     })
+}
+
+/// Whether the curves stay together from a sample on, both ways, to an end of one of them.
+///
+/// All overlaps do: curves that are one in an interval are one wherever both go on. Around a touch they part again,
+/// which elimination knows, so that samples there say nothing.
+fn reaches_an_end(samples: &[Sample], from: usize) -> bool {
+    let at_end = |x: &Sample| x.t == 0.0 || x.t == 1.0;
+    let stops = |x: &&Sample| x.distance >= TOGETHER || at_end(x);
+    let onward = samples[from..].iter().find(stops).is_none_or(at_end);
+    let backward = samples[..=from].iter().rev().find(stops).is_none_or(at_end);
+    onward && backward
 }
 
 /// What is wrong with the meetings of a curve with itself, by elimination.

@@ -14,14 +14,14 @@ pub(super) fn enter<'a>(
     resolution: f64,
 ) -> Result<(World<'a>, Vec<Body>), BooleanError> {
     let closed = operands.iter().enumerate().map(|(i, operand)| topology_of(i, operand));
-    let topologies: Vec<Topology> = closed.collect::<Result<_, _>>()?;
+    let topologies: Vec<Cow<'_, Topology>> = closed.collect::<Result<_, _>>()?;
     let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
     let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let mut world = World::new(Snapped::new(largest, resolution));
     world.places.points.reserve(operands.iter().map(|operand| operand.mesh.positions.len()).sum());
     world.labels = operands.iter().map(|operand| operand.labels).collect();
     let rounds = world.places.lattice() != Lattice::fitting(largest);
-    let enter = |(i, (operand, topology))| {
+    let enter = |(i, (operand, topology)): (u32, (&Operand<'a>, Cow<'_, Topology>))| {
         let origin = origin_of(&world, operand, &topology, rounds);
         Body::of_operand(&mut world, i, operand, &topology, origin.as_deref())
     };
@@ -30,23 +30,24 @@ pub(super) fn enter<'a>(
 }
 
 /// The topology of an operand, which must bound a volume.
-fn topology_of(index: usize, operand: &Operand<'_>) -> Result<Topology, BooleanError> {
+fn topology_of<'a>(index: usize, operand: &Operand<'a>) -> Result<Cow<'a, Topology>, BooleanError> {
+    if let Some(topology) = operand.topology {
+        return Ok(Cow::Borrowed(topology));
+    }
     let Mesh { positions, triangles } = operand.mesh;
     let is_sound = |&[a, b, c]: &[u32; 3]| {
         a != b && b != c && c != a && [a, b, c].iter().all(|&v| (v as usize) < positions.len())
     };
-    let simple =
-        operand.checked || (triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()));
-    if simple {
+    if triangles.iter().all(is_sound) && positions.iter().all(|p| p.is_finite()) {
         let topology = Topology::new(triangles);
-        if operand.checked || topology.is_closed() {
-            return Ok(topology);
+        if topology.is_closed() {
+            return Ok(Cow::Owned(topology));
         }
     }
     // What is not that simple may be closed all the same.
     let defects = Defects::of(operand.mesh);
     if defects.is_closed() {
-        Ok(Topology::new(triangles))
+        Ok(Cow::Owned(Topology::new(triangles)))
     } else {
         Err(BooleanError::NotClosed { operand: index, defects: Box::new(defects) })
     }
@@ -100,9 +101,11 @@ impl Body {
         let mesh = operand.mesh;
         let ids = match origin {
             Some(origin) => exact_points(world, &mesh.positions, origin),
-            None => mesh.positions.iter().map(|&p| world.places.add(p)).collect(),
+            None => world.places.add_all(&mesh.positions),
         };
         let mut body = Body::default();
+        body.corners.reserve(mesh.triangles.len());
+        body.births.reserve(mesh.triangles.len());
         let mut slots = vec![NONE; mesh.triangles.len()];
         for (t, triangle) in (0_u32..).zip(&mesh.triangles) {
             let corners = triangle.map(|v| ids[v as usize]);
@@ -112,10 +115,11 @@ impl Body {
                 body.births.push(Birth { operand: index, triangle: t });
             }
         }
-        body.twins = twins_of(topology, &slots);
+        let is_whole = body.corners.len() == mesh.triangles.len();
+        body.twins = if is_whole { topology.twins().to_vec() } else { twins_of(topology, &slots) };
         body.bounds = Aabb::of(body.corners.iter().flatten().map(|&p| world.points().rounded(p)));
         let embedded = origin.map_or(operand.embedded, |origin| origin.embedded);
-        body.embedded = embedded && body.corners.len() == mesh.triangles.len();
+        body.embedded = embedded && is_whole;
         if let Some(origin) = origin {
             body.remember(world, origin, &slots);
         }

@@ -368,7 +368,7 @@ struct Surface {
     facings: Vec<Facing>,
     /// For half-edge `3 t + i` of the result, its twin.
     twins: Vec<u32>,
-    /// For each half-edge, its line in the world, or [`NONE`].
+    /// For each half-edge, its line in the world, or [`NONE`]; may be shorter than `twins`.
     lines: Vec<u32>,
     /// For each triangle of the scene, its triangle in the result.
     of_whole: Vec<u32>,
@@ -384,9 +384,18 @@ impl Surface {
         self.corners.push(corners);
         self.birth.push(birth);
         self.facings.push(facing);
-        self.lines.extend([NONE; 3]);
         self.twins.extend([NONE; 3]);
         self.corners.len() as u32 - 1
+    }
+
+    fn set_line(&mut self, half_edge: u32, line: u32) {
+        if line != NONE {
+            let least = half_edge as usize + 1;
+            if self.lines.len() < least {
+                self.lines.resize(least, NONE);
+            }
+            self.lines[half_edge as usize] = line;
+        }
     }
 
     fn link(&mut self, a: u32, b: u32) {
@@ -410,7 +419,7 @@ impl Surface {
             self.of_whole[t as usize] = triangle;
             let sides = if turned { TURNED } else { [0, 1, 2] };
             for (half_edge, side) in (3 * t..).zip(sides) {
-                self.lines[(3 * triangle + side) as usize] = scene.line_index(half_edge);
+                self.set_line(3 * triangle + side, scene.line_index(half_edge));
             }
         }
         for (half_edge, &twin) in (0_u32..).zip(&scene.twins) {
@@ -461,8 +470,8 @@ impl Surface {
                     Ok(at) => {
                         let rim = rim_of[at].1;
                         self.of_rim[rim as usize] = half_edge;
-                        self.lines[half_edge as usize] =
-                            world_line(&mut scene.world, carrier, rims.rims[rim as usize].line, ends);
+                        let line = rims.rims[rim as usize].line;
+                        self.set_line(half_edge, world_line(&mut scene.world, carrier, line, ends));
                     }
                     Err(_) => inner.push(([ends[0].min(ends[1]), ends[0].max(ends[1])], half_edge)),
                 }

@@ -55,7 +55,7 @@ const MOST_DOUBLINGS: i32 = 10;
 
 /// Makes a result of a rounded surface: looks for crossings and repairs them.
 pub(super) fn certify(rounded: Rounded, operands: &[Operand<'_>]) -> Combined {
-    let Rounded { mesh, birth, embedded, origin, movement } = rounded;
+    let Rounded { mesh, birth, twins, embedded, origin, is_whole, movement } = rounded;
     let suspects = origin.as_ref().map_or_else(Vec::new, |origin| moved_triangles(&mesh, origin));
     let found = crossing_pairs(&mesh, &suspects);
     let ulp = f64::EPSILON * mesh.positions.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
@@ -68,7 +68,10 @@ pub(super) fn certify(rounded: Rounded, operands: &[Operand<'_>]) -> Combined {
             certificate.movement += repaired.movement;
             (Solid::assume(repaired.mesh, false), repaired.birth)
         }
-        None => (Solid::assume(mesh, embedded).rounded_from(origin), birth),
+        None => {
+            let solid = Solid::assume(mesh, embedded).with_twins(twins);
+            (solid.rounded_from(origin.filter(|_| is_whole)), birth)
+        }
     };
     certificate.slivers = slivers(solid.mesh(), SLIVER * ulp);
     Combined { solid, birth, certificate }

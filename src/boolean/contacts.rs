@@ -7,10 +7,10 @@
 
 use super::pairs::candidates;
 use super::scene::Scene;
-use super::world::NONE;
-use crate::math::Vec3;
+use super::slope::Slope;
+use super::world::{Lookup, NONE};
 use crate::numeric::DisjointSets;
-use crate::polygon::exact::{Plane, PointId, Points};
+use crate::polygon::exact::{Plane, PointId};
 use std::cmp::Ordering;
 
 /// What two faces of different planes have in common: a segment, or a point where both ends are the same.
@@ -37,6 +37,7 @@ pub(super) fn find(scene: &mut Scene<'_>) -> Contacts {
         contacts: Contacts { touched: vec![false; count], traces: Vec::new() },
         stops: Vec::new(),
         faces: None,
+        crossings: Lookup::default(),
     };
     for [t, s] in candidates(scene) {
         finder.examine(scene, t, s);
@@ -57,6 +58,8 @@ struct Finder {
     stops: Vec<Stop>,
     /// Triangles joined across diagonals that contacts cross.
     faces: Option<DisjointSets>,
+    /// Where edges cross the planes of triangles: both triangles along an edge ask for it.
+    crossings: Lookup<(PointId, PointId, u32), PointId>,
 }
 
 /// Where a contact of two faces starts or ends.
@@ -129,8 +132,8 @@ impl Finder {
         }
         let (plane_t, plane_s) = (scene.own_plane(t), scene.own_plane(s));
         let direction = Direction::of(&plane_t, &plane_s);
-        let of_t = self.section(scene, t, sides_t, plane_t, &plane_s);
-        let across = self.section(scene, s, sides_s, plane_s, &plane_t);
+        let of_t = self.section(scene, t, sides_t, plane_t, (s, &plane_s));
+        let across = self.section(scene, s, sides_s, plane_s, (t, &plane_t));
         // The line runs the other way for the second triangle.
         let of_s = Section { start: across.end, end: across.start, plane: across.plane };
         match [of_t.start, of_t.end, of_s.start, of_s.end] {
@@ -215,7 +218,7 @@ impl Finder {
         triangle: u32,
         sides: [i32; 3],
         own: Plane,
-        plane: &Plane,
+        other: (u32, &Plane),
     ) -> Section {
         let corners = scene.corners[triangle as usize];
         let (mut start, mut end) = (None, None);
@@ -229,7 +232,7 @@ impl Finder {
                     end = Some(End::Point(corners[i]));
                 }
             } else if sides[i] * next < 0 {
-                let crossing = self.crossing(scene, 3 * triangle + i as u32, &own, plane);
+                let crossing = self.crossing(scene, 3 * triangle + i as u32, &own, other);
                 *(if next > 0 { &mut start } else { &mut end }) = Some(crossing);
             }
         }
@@ -237,8 +240,14 @@ impl Finder {
         Section { start: start.expect(meets), end: end.expect(meets), plane: own }
     }
 
-    /// Where a side of a triangle crosses a plane.
-    fn crossing(&mut self, scene: &mut Scene<'_>, half_edge: u32, own: &Plane, plane: &Plane) -> End {
+    /// Where a side of a triangle crosses the plane of another one.
+    fn crossing(
+        &mut self,
+        scene: &mut Scene<'_>,
+        half_edge: u32,
+        own: &Plane,
+        (other, plane): (u32, &Plane),
+    ) -> End {
         if scene.goes_on(half_edge, own) {
             let count = scene.corners.len();
             let faces = self.faces.get_or_insert_with(|| DisjointSets::new(count));
@@ -248,13 +257,13 @@ impl Finder {
         let line = scene.line_index(half_edge);
         let [from, to] = scene.ends(half_edge);
         let points = &mut scene.world.places.points;
-        End::Point(match line {
+        End::Point(*self.crossings.entry((from.min(to), from.max(to), other)).or_insert_with(|| match line {
             NONE => points.crossing(from, to, plane),
             index => {
                 let line = &scene.world.lines[index as usize];
                 points.meeting(own, line, plane).expect("a line that crosses a plane meets it")
             }
-        })
+        }))
     }
 
     /// Makes traces of the starts and ends that belong together.
@@ -354,37 +363,6 @@ fn sides(scene: &mut Scene<'_>, of: u32, triangle: u32) -> [i32; 3] {
     }
     let plane = scene.own_plane(of);
     [0, 1, 2].map(|i| quick[i].unwrap_or_else(|| plane.side(scene.points(), corners[i])))
-}
-
-/// A triangle's plane in doubles, good enough for points away from it.
-struct Slope {
-    corner: Vec3,
-    normal: Vec3,
-    /// Largest differences along the axes from the corner to the other two, with their errors.
-    reach: Vec3,
-}
-
-impl Slope {
-    fn new(points: &Points, corners: [PointId; 3]) -> Slope {
-        let [a, b, c] = corners.map(|p| points.rounded(p));
-        let (u, v) = (b - a, c - a);
-        Slope { corner: a, normal: u.cross(v), reach: u.abs().max(v.abs()) }
-    }
-
-    /// On which side of the plane a point lies, where doubles can tell.
-    fn side(&self, p: Vec3) -> Option<i32> {
-        // Coordinates are below 2^61 and rounded, so each carries an error of at most 2^7, and each difference of 2^9
-        // beside that of its own rounding. The determinant is a sum of six products of three differences, one along each
-        // axis; with all errors it lies between the products of what they are at most with and without them.
-        const ERROR: f64 = 512.0;
-        let w = p - self.corner;
-        let value = self.normal.dot(w);
-        let most = self.reach.max(w.abs());
-        let with_error = most + Vec3::splat(ERROR);
-        let spread = 6.0 * (with_error.x * with_error.y * with_error.z - most.x * most.y * most.z);
-        let bound = 2.0 * spread + 64.0 * f64::EPSILON * with_error.x * with_error.y * with_error.z;
-        if value.abs() > bound { Some(if value > 0.0 { 1 } else { -1 }) } else { None }
-    }
 }
 
 fn all_on_one_side(sides: [i32; 3]) -> bool {

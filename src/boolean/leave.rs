@@ -11,10 +11,13 @@ use crate::polygon::exact::{Origin, Plane, PointId};
 pub(super) struct Rounded {
     pub(super) mesh: Mesh,
     pub(super) birth: Vec<Birth>,
+    pub(super) twins: Vec<u32>,
     /// Whether it is known not to cross itself.
     pub(super) embedded: bool,
     /// What it was rounded from.
     pub(super) origin: Option<Origin>,
+    /// Whether it is a surface that can be gone back to: all triangles have area.
+    pub(super) is_whole: bool,
     /// Bound on the distance of a vertex from its exact place.
     pub(super) movement: f64,
 }
@@ -36,11 +39,11 @@ impl World<'_> {
             && points.iter().all(|&point| self.places.is_given(point));
         let exact = body.embedded && !is_parted;
         // Edges too short to be parted leave triangles without area, which have no place in an exact surface.
-        let has_flat = is_parted && body.corners.iter().any(|&[a, b, c]| a == b || b == c || c == a);
-        let origin = if embedded || has_flat { None } else { self.origin_of(&body, &points, exact) };
+        let is_whole = !is_parted || body.corners.iter().all(|&[a, b, c]| a != b && b != c && c != a);
+        let origin = if embedded { None } else { self.origin_of(&body, &points, exact) };
         let movement = origin.as_ref().map_or(0.0, |origin| self.movement(origin, &positions));
         let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
-        Rounded { mesh, birth: body.births, embedded, origin, movement }
+        Rounded { mesh, birth: body.births, twins: body.twins, embedded, origin, is_whole, movement }
     }
 
     /// Bound on the distance of positions from where the vertices are: half an ulp in each coordinate of what was rounded,
@@ -114,6 +117,9 @@ impl Numbered {
     fn part_double_edges(&mut self, world: &mut World<'_>) -> bool {
         let mut double = self.double_edges();
         let any = !double.is_empty();
+        if any {
+            self.body.lines.resize(self.body.twins.len(), NONE);
+        }
         while !double.is_empty() {
             self.part(world, &double);
             double = self.double_edges();
@@ -149,12 +155,19 @@ impl Numbered {
         }
     }
 
-    /// One half-edge of each edge between vertices that an edge before it joins too, behind one of that.
+    /// One half-edge of each edge between vertices that an edge before it joins too, behind one of that. Operands have
+    /// none, so each runs from a corner of cut faces, which know their plane.
     fn double_edges(&self) -> Vec<[u32; 2]> {
         let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
+        let mut at_cut = vec![false; self.count as usize];
+        for (corners, _) in
+            self.vertices.chunks(3).zip(&self.body.facings).filter(|(_, facing)| facing.known().is_some())
+        {
+            corners.iter().for_each(|&vertex| at_cut[vertex as usize] = true);
+        }
         let mut edges: Vec<(u32, u32, u32)> = (0..self.vertices.len())
             .map(|h| (self.vertices[h], self.vertices[next(h)], h as u32))
-            .filter(|(from, to, _)| from < to)
+            .filter(|&(from, to, _)| from < to && (at_cut[from as usize] || at_cut[to as usize]))
             .collect();
         edges.sort_unstable();
         edges.windows(2).filter(|e| (e[0].0, e[0].1) == (e[1].0, e[1].1)).map(|e| [e[0].2, e[1].2]).collect()

@@ -30,6 +30,7 @@ mod ray;
 mod regions;
 mod repair;
 mod scene;
+mod slope;
 mod strategy;
 mod tree;
 mod world;

@@ -1,13 +1,13 @@
 use super::world::Labels;
-use crate::mesh::{Mesh, Solid};
+use crate::mesh::{Mesh, Solid, Topology};
 use crate::polygon::exact::Origin;
 
 /// An operand of a boolean: a mesh and what is known of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Operand<'a> {
     pub(super) mesh: &'a Mesh,
-    /// Whether it is known to be closed.
-    pub(super) checked: bool,
+    /// Its topology, where it is known to be closed.
+    pub(super) topology: Option<&'a Topology>,
     /// Whether it is known not to cross itself.
     pub(super) embedded: bool,
     pub(super) labels: Labels<'a>,
@@ -36,7 +36,7 @@ impl<'a> Operand<'a> {
 
 impl<'a> From<&'a Mesh> for Operand<'a> {
     fn from(mesh: &'a Mesh) -> Self {
-        Operand { mesh, checked: false, embedded: false, labels: Labels::One(0), origin: None }
+        Operand { mesh, topology: None, embedded: false, labels: Labels::One(0), origin: None }
     }
 }
 
@@ -44,7 +44,7 @@ impl<'a> From<&'a Solid> for Operand<'a> {
     fn from(solid: &'a Solid) -> Self {
         Operand {
             mesh: solid.mesh(),
-            checked: true,
+            topology: Some(solid.topology()),
             embedded: solid.is_embedded(),
             labels: Labels::One(0),
             origin: solid.origin(),

@@ -1,10 +1,11 @@
 //! Pairs of triangles that may touch.
 
 use super::scene::Scene;
+use super::slope::are_parted;
 use crate::math::{Aabb, Vec3, cbrt};
 use crate::spatial::Bvh;
 
-/// Pairs of triangles whose boxes touch: of different members and, in members not known to be embedded, of one.
+/// Pairs of triangles that may have a contact: of different members and, in members not known to be embedded, of one.
 pub(super) fn candidates(scene: &Scene<'_>) -> Vec<[u32; 2]> {
     let members = &scene.members;
     let boxes: Vec<Aabb> = members.iter().map(|member| member.bounds).collect();
@@ -17,7 +18,12 @@ pub(super) fn candidates(scene: &Scene<'_>) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
     for (i, j) in pairs {
         let (a, b) = (&parts[i as usize], &parts[j as usize]);
-        let mut report = |x: u32, y: u32| found.push([a.triangles[x as usize], b.triangles[y as usize]]);
+        let mut report = |x: u32, y: u32| {
+            let (t, s) = (a.triangles[x as usize], b.triangles[y as usize]);
+            if !are_parted(scene, t, s) {
+                found.push([t, s]);
+            }
+        };
         if i == j {
             a.bvh.self_pairs(&a.boxes, report);
         } else {
@@ -45,31 +51,40 @@ fn parts(scene: &Scene<'_>, pairs: &[(u32, u32)], boxes: &[Aabb]) -> Vec<Part> {
             windows[k as usize] = windows[k as usize].union(overlap);
         }
     }
-    let crowd = Crowd::new(scene, &windows);
-    let part = |(member, &window): (usize, &Aabb)| {
-        let mut part = Part::default();
-        in_window(scene, member, window, |t, bounds| {
-            if crowd.as_ref().is_none_or(|crowd| crowd.is_near_another(scene, member, bounds)) {
-                part.triangles.push(t);
-                part.boxes.push(bounds);
-            }
-        });
+    let mut parts: Vec<Part> =
+        windows.iter().enumerate().map(|(member, &window)| Part::in_window(scene, member, window)).collect();
+    if let Some(crowd) = Crowd::new(&parts, &windows) {
+        for (member, part) in parts.iter_mut().enumerate().filter(|(k, _)| scene.members[*k].embedded) {
+            part.retain(|bounds| crowd.is_near_another(member, bounds));
+        }
+    }
+    for part in &mut parts {
         part.bvh = Bvh::new(&part.boxes);
-        part
-    };
-    windows.iter().enumerate().map(part).collect()
+    }
+    parts
 }
 
-/// Calls `see` for the triangles of a member that touch a box.
-fn in_window(scene: &Scene<'_>, member: usize, window: Aabb, mut see: impl FnMut(u32, Aabb)) {
-    if window.is_empty() {
-        return;
-    }
-    for t in scene.members[member].triangles.clone() {
-        let bounds = scene.bounds_of(t);
-        if bounds.touches(window) {
-            see(t, bounds);
+impl Part {
+    /// The triangles of a member that touch a box.
+    fn in_window(scene: &Scene<'_>, member: usize, window: Aabb) -> Part {
+        let mut part = Part::default();
+        if !window.is_empty() {
+            for t in scene.members[member].triangles.clone() {
+                let bounds = scene.bounds_of(t);
+                if bounds.touches(window) {
+                    part.triangles.push(t);
+                    part.boxes.push(bounds);
+                }
+            }
         }
+        part
+    }
+
+    /// Keeps the triangles with boxes that pass a test.
+    fn retain(&mut self, mut is_kept: impl FnMut(Aabb) -> bool) {
+        let kept: Vec<usize> = (0..self.boxes.len()).filter(|&i| is_kept(self.boxes[i])).collect();
+        self.triangles = kept.iter().map(|&i| self.triangles[i]).collect();
+        self.boxes = kept.iter().map(|&i| self.boxes[i]).collect();
     }
 }
 
@@ -94,9 +109,8 @@ const NOBODY: u32 = u32::MAX;
 const SEVERAL: u32 = u32::MAX - 1;
 
 impl Crowd {
-    fn new(scene: &Scene<'_>, windows: &[Aabb]) -> Option<Crowd> {
-        let near = (0..windows.len()).filter(|&k| !windows[k].is_empty());
-        let count: usize = near.map(|k| scene.members[k].triangles.len()).sum();
+    fn new(parts: &[Part], windows: &[Aabb]) -> Option<Crowd> {
+        let count: usize = parts.iter().map(|part| part.boxes.len()).sum();
         if count < WORTH_A_GRID {
             return None;
         }
@@ -109,8 +123,8 @@ impl Crowd {
             large_boxes: Vec::new(),
             large_bvh: Bvh::default(),
         };
-        for (member, &window) in windows.iter().enumerate() {
-            in_window(scene, member, window, |_, bounds| crowd.enter(member as u32, bounds));
+        for (member, part) in (0..).zip(parts) {
+            part.boxes.iter().for_each(|&bounds| crowd.enter(member, bounds));
         }
         crowd.large_boxes = crowd.large.iter().map(|&(_, bounds)| bounds).collect();
         crowd.large_bvh = Bvh::new(&crowd.large_boxes);
@@ -133,10 +147,10 @@ impl Crowd {
         }
     }
 
-    /// Whether something of another member, or of the same one if it may cross itself, may touch a triangle with this box.
-    fn is_near_another(&self, scene: &Scene<'_>, member: usize, bounds: Aabb) -> bool {
+    /// Whether something of another member may touch a triangle with this box.
+    fn is_near_another(&self, member: usize, bounds: Aabb) -> bool {
         let span = self.grid.span(bounds);
-        if !scene.members[member].embedded || span.len() > LARGE {
+        if span.len() > LARGE {
             return true;
         }
         if self.grid.cells(span).any(|cell| self.reached_by[cell] == SEVERAL) {

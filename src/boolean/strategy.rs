@@ -70,7 +70,7 @@ impl Kitchen<'_> {
     fn part(&mut self, tree: &Tree) -> Body {
         match tree {
             Tree::Leaf(index) => self.take(*index, 1),
-            Tree::Node(..) => self.evaluate(tree),
+            Tree::Node(..) | Tree::AtLeast(..) => self.evaluate(tree),
         }
     }
 

@@ -18,6 +18,8 @@ pub enum Tree {
     Leaf(usize),
     /// An operation on subtrees.
     Node(Op, Vec<Tree>),
+    /// Where at least so many of the subtrees are. No place is in at least 0 of them: what is everywhere is no solid.
+    AtLeast(u32, Vec<Tree>),
 }
 
 impl Tree {
@@ -44,13 +46,22 @@ impl Tree {
             Tree::Node(Op::SymmetricDifference, parts) => {
                 parts.iter().filter(|part| is_in(part)).count() % 2 == 1
             }
+            Tree::AtLeast(least, parts) => {
+                *least > 0 && parts.iter().filter(|part| is_in(part)).count() >= *least as usize
+            }
         }
     }
 
     /// The same expression with operations of operations of one kind made one: `(a + b) + c` is `a + b + c`, and
     /// `(a - b) - c` is `a - b - c`.
     pub(super) fn flattened(&self) -> Tree {
-        let Tree::Node(op, parts) = self else { return self.clone() };
+        let (op, parts) = match self {
+            Tree::Leaf(_) => return self.clone(),
+            Tree::AtLeast(least, parts) => {
+                return Tree::AtLeast(*least, parts.iter().map(Tree::flattened).collect());
+            }
+            Tree::Node(op, parts) => (op, parts),
+        };
         let mut flat = Vec::with_capacity(parts.len());
         for (place, part) in parts.iter().enumerate() {
             let merges = match op {
@@ -71,7 +82,7 @@ impl Tree {
     }
 
     fn is_empty_node(&self) -> bool {
-        matches!(self, Tree::Node(_, parts) if parts.is_empty())
+        matches!(self, Tree::Node(_, parts) | Tree::AtLeast(_, parts) if parts.is_empty())
     }
 
     /// The operands it names, in order, and how often it names each.
@@ -85,15 +96,17 @@ impl Tree {
     fn visit(&self, see: &mut impl FnMut(usize)) {
         match self {
             Tree::Leaf(index) => see(*index),
-            Tree::Node(_, parts) => parts.iter().for_each(|part| part.visit(see)),
+            Tree::Node(_, parts) | Tree::AtLeast(_, parts) => parts.iter().for_each(|part| part.visit(see)),
         }
     }
 
     /// The same expression with other names for the operands.
     pub(super) fn renamed(&self, name: &impl Fn(usize) -> usize) -> Tree {
+        let all = |parts: &[Tree]| parts.iter().map(|part| part.renamed(name)).collect();
         match self {
             Tree::Leaf(index) => Tree::Leaf(name(*index)),
-            Tree::Node(op, parts) => Tree::Node(*op, parts.iter().map(|part| part.renamed(name)).collect()),
+            Tree::Node(op, parts) => Tree::Node(*op, all(parts)),
+            Tree::AtLeast(least, parts) => Tree::AtLeast(*least, all(parts)),
         }
     }
 
@@ -101,7 +114,9 @@ impl Tree {
     pub fn last_operand(&self) -> Option<usize> {
         match self {
             Tree::Leaf(index) => Some(*index),
-            Tree::Node(_, parts) => parts.iter().filter_map(Tree::last_operand).max(),
+            Tree::Node(_, parts) | Tree::AtLeast(_, parts) => {
+                parts.iter().filter_map(Tree::last_operand).max()
+            }
         }
     }
 }
@@ -119,10 +134,17 @@ pub(super) struct Judge {
 /// An operation; parts come before the nodes they are parts of.
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    op: Op,
+    rule: Rule,
     parts: u32,
     /// The node it is a part of, and whether as the first part.
     home: Option<(u32, bool)>,
+}
+
+/// When an operation holds.
+#[derive(Clone, Copy, Debug)]
+enum Rule {
+    Op(Op),
+    AtLeast(u32),
 }
 
 impl Judge {
@@ -130,23 +152,25 @@ impl Judge {
         let mut judge = Judge { homes: vec![Vec::new(); operands], nodes: Vec::new(), holding: Vec::new() };
         // A union of one stands for an operand alone.
         match tree {
-            Tree::Leaf(_) => judge.add(Op::Union, std::slice::from_ref(tree)),
-            Tree::Node(op, parts) => judge.add(*op, parts),
+            Tree::Leaf(_) => judge.add(Rule::Op(Op::Union), std::slice::from_ref(tree)),
+            Tree::Node(op, parts) => judge.add(Rule::Op(*op), parts),
+            Tree::AtLeast(least, parts) => judge.add(Rule::AtLeast(*least), parts),
         };
         judge.holding = vec![(false, 0); judge.nodes.len()];
         judge
     }
 
-    fn add(&mut self, op: Op, parts: &[Tree]) -> u32 {
+    fn add(&mut self, rule: Rule, parts: &[Tree]) -> u32 {
         let inner: Vec<Option<u32>> = parts
             .iter()
             .map(|part| match part {
                 Tree::Leaf(_) => None,
-                Tree::Node(op, parts) => Some(self.add(*op, parts)),
+                Tree::Node(op, parts) => Some(self.add(Rule::Op(*op), parts)),
+                Tree::AtLeast(least, parts) => Some(self.add(Rule::AtLeast(*least), parts)),
             })
             .collect();
         let node = self.nodes.len() as u32;
-        self.nodes.push(Node { op, parts: parts.len() as u32, home: None });
+        self.nodes.push(Node { rule, parts: parts.len() as u32, home: None });
         for (place, (part, inner)) in parts.iter().zip(inner).enumerate() {
             match (part, inner) {
                 (Tree::Leaf(leaf), _) => self.homes[*leaf].push((node, place == 0)),
@@ -175,14 +199,15 @@ impl Judge {
             while waiting.peek() == Some(&std::cmp::Reverse(node)) {
                 waiting.pop();
             }
-            let Node { op, parts, home } = self.nodes[node as usize];
+            let Node { rule, parts, home } = self.nodes[node as usize];
             let (first, rest) = std::mem::take(&mut self.holding[node as usize]);
             let all = rest + u32::from(first);
-            let holds = match op {
-                Op::Union => all > 0,
-                Op::Intersection => all == parts,
-                Op::Difference => first && rest == 0,
-                Op::SymmetricDifference => all % 2 == 1,
+            let holds = match rule {
+                Rule::Op(Op::Union) => all > 0,
+                Rule::Op(Op::Intersection) => all == parts,
+                Rule::Op(Op::Difference) => first && rest == 0,
+                Rule::Op(Op::SymmetricDifference) => all % 2 == 1,
+                Rule::AtLeast(least) => least > 0 && all >= least,
             };
             if holds {
                 if let Some(home) = home {
@@ -234,6 +259,12 @@ mod tests {
                 vec![node(Difference, vec![leaf(3), node(Difference, vec![leaf(0), leaf(1)])]), leaf(2)],
             ),
             node(Difference, vec![leaf(0), node(Intersection, vec![leaf(1), leaf(2)]), leaf(0)]),
+            Tree::AtLeast(0, vec![leaf(0), leaf(1)]),
+            Tree::AtLeast(2, vec![leaf(0), leaf(1), node(Union, vec![leaf(2), leaf(3)])]),
+            Tree::AtLeast(2, vec![leaf(0), leaf(0), leaf(1)]),
+            Tree::AtLeast(5, vec![leaf(0), leaf(1)]),
+            node(Difference, vec![Tree::AtLeast(2, vec![leaf(0), leaf(1), leaf(2)]), leaf(3)]),
+            node(Intersection, vec![leaf(0), Tree::AtLeast(1, vec![])]),
         ]
     }
 

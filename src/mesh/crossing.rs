@@ -21,15 +21,6 @@ pub fn crossing_pairs(mesh: &Mesh, suspects: &[u32]) -> Vec<[u32; 2]> {
     let own: Vec<Aabb> = suspects.iter().map(|&t| bounds(t)).collect();
     let own_bvh = Bvh::new(&own);
     let window = own.iter().fold(Aabb::EMPTY, |all, &one| all.union(one));
-    let mut others: Vec<u32> = Vec::new();
-    let mut other_boxes: Vec<Aabb> = Vec::new();
-    for t in (0..mesh.triangles.len() as u32).filter(|t| suspects.binary_search(t).is_err()) {
-        let bounds = bounds(t);
-        if bounds.touches(window) {
-            others.push(t);
-            other_boxes.push(bounds);
-        }
-    }
     let mut found = Vec::new();
     let mut examine = |t: u32, s: u32| {
         if cross(&mesh.corners(t as usize), &mesh.corners(s as usize)) {
@@ -37,8 +28,14 @@ pub fn crossing_pairs(mesh: &Mesh, suspects: &[u32]) -> Vec<[u32; 2]> {
         }
     };
     own_bvh.self_pairs(&own, |i, j| examine(suspects[i as usize], suspects[j as usize]));
-    let other_bvh = Bvh::new(&other_boxes);
-    own_bvh.pairs(&own, &other_bvh, &other_boxes, |i, j| examine(suspects[i as usize], others[j as usize]));
+    let mut next_suspects = suspects.iter().peekable();
+    for t in 0..mesh.triangles.len() as u32 {
+        let is_suspect = next_suspects.next_if_eq(&&t).is_some();
+        let bounds = bounds(t);
+        if !is_suspect && bounds.touches(window) {
+            own_bvh.touching(&own, bounds, |i| examine(suspects[i as usize], t));
+        }
+    }
     found.sort_unstable();
     found
 }
@@ -54,7 +51,9 @@ fn cross(a: &Corners, b: &Corners) -> bool {
         3 => has_area(a),
         2 => lie_on_each_other(a, b, [normal_a, normal_b], shared_a, shared_b),
         _ => {
-            !are_apart_seen_along(widest(normal_a), a, b, shared_a, shared_b)
+            !is_beside_plane(a, normal_a, b, shared_b)
+                && !is_beside_plane(b, normal_b, a, shared_a)
+                && !are_apart_seen_along(widest(normal_a), a, b, shared_a, shared_b)
                 && cross_in_space(a, b, shared_a, shared_b)
         }
     }
@@ -81,6 +80,22 @@ fn lie_on_each_other(
     let [u, v, p, q] = [a[(i + 1) % 3], a[(i + 2) % 3], a[i], b[j]].map(|p| seen_along(axis, p));
     let (p, q) = (orient2d(u, v, p), orient2d(u, v, q));
     p * q > 0.0
+}
+
+/// Whether the corners of `b` that are not common lie on one side of the plane of `a`, as far as doubles can tell.
+fn is_beside_plane(a: &Corners, normal: Vec3, b: &Corners, shared_b: [bool; 3]) -> bool {
+    // The determinant is that of `orient3d`, whose error Shewchuk (1997) bounds by (7 + 56 u) u times the sum of the
+    // magnitudes of its products, u = 2^-53.
+    const FILTER: f64 = 8.0 * (f64::EPSILON / 2.0);
+    let (u, v) = ((a[1] - a[0]).abs(), (a[2] - a[0]).abs());
+    let magnitude = Vec3::new(u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x);
+    let mut sides = (0..3).filter(|&i| !shared_b[i]).map(|i| {
+        let w = b[i] - a[0];
+        let (value, bound) = (normal.dot(w), FILTER * magnitude.dot(w.abs()));
+        i32::from(value > bound) - i32::from(value < -bound)
+    });
+    let first = sides.next().unwrap_or(0);
+    first != 0 && sides.all(|side| side == first)
 }
 
 /// A quick sign that two triangles with at most one common corner have nothing else in common: seen along an axis, a

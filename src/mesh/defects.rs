@@ -1,6 +1,5 @@
 use super::topology::sorted_half_edges;
 use super::{Mesh, Topology};
-use crate::numeric::DisjointSets;
 
 /// How many of each kind of defect a mesh has.
 ///
@@ -127,11 +126,32 @@ impl Defects {
 /// For each corner, the number of its fan, and how many fans there are. Two corners at one vertex are in one fan when a
 /// chain of twins leads from one to the other; `twins` names the twin of each half-edge or [`Topology::NONE`].
 pub(crate) fn fans(twins: &[u32]) -> (Vec<u32>, u32) {
-    let mut fans = DisjointSets::new(twins.len());
-    for (half_edge, &twin) in (0_u32..).zip(twins) {
-        if twin != Topology::NONE {
-            fans.join(half_edge, Topology::next(twin));
+    const UNSEEN: u32 = u32::MAX;
+    let mut fans = vec![UNSEEN; twins.len()];
+    let mut count = 0;
+    for first in 0..twins.len() as u32 {
+        if fans[first as usize] != UNSEEN {
+            continue;
         }
+        // Around the vertex one way and, where a border ends that, the other way from the start.
+        let mut corner = first;
+        loop {
+            fans[corner as usize] = count;
+            let twin = twins[corner as usize];
+            if twin == Topology::NONE {
+                break;
+            }
+            corner = Topology::next(twin);
+            if corner == first {
+                break;
+            }
+        }
+        let mut corner = twins[Topology::previous(first) as usize];
+        while corner != Topology::NONE && fans[corner as usize] == UNSEEN {
+            fans[corner as usize] = count;
+            corner = twins[Topology::previous(corner) as usize];
+        }
+        count += 1;
     }
-    fans.numbered()
+    (fans, count)
 }

@@ -2,7 +2,7 @@ use super::defects::fans;
 use super::{Defects, Mesh, Topology};
 use crate::math::Vec3;
 use crate::polygon::exact::Origin;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A mesh that bounds a volume, checked once.
 ///
@@ -30,6 +30,8 @@ pub struct Solid {
     mesh: Mesh,
     embedded: bool,
     origin: Option<Arc<Origin>>,
+    /// Once somebody has asked.
+    topology: OnceLock<Topology>,
 }
 
 impl PartialEq for Solid {
@@ -51,19 +53,30 @@ impl Solid {
         }
         let whole = defects.non_manifold_vertices == 0 && defects.unused_positions == 0;
         let mesh = if whole { mesh } else { with_a_vertex_per_fan(&mesh) };
-        Ok(Solid { mesh, embedded: false, origin: None })
+        Ok(Solid { mesh, ..Solid::default() })
     }
 
     /// A solid made by a verb that keeps the promises by construction. `embedded` says that the surface is known
     /// not to cross or touch itself except at its own edges and vertices.
     pub(crate) fn assume(mesh: Mesh, embedded: bool) -> Solid {
         debug_assert!(Defects::of(&mesh).is_solid(), "{:?}", Defects::of(&mesh));
-        Solid { mesh, embedded, origin: None }
+        Solid { mesh, embedded, ..Solid::default() }
     }
 
     /// The same solid with the exact surface that it was rounded from.
     pub(crate) fn rounded_from(self, origin: Option<Origin>) -> Solid {
         Solid { origin: origin.map(Arc::new), ..self }
+    }
+
+    /// The same solid with its topology, which whoever made it knew.
+    pub(crate) fn with_twins(self, twins: Vec<u32>) -> Solid {
+        debug_assert_eq!(Topology::new(self.triangles()).twins(), twins);
+        Solid { topology: OnceLock::from(Topology::of_twins(twins)), ..self }
+    }
+
+    /// Which half-edges are twins; found when first asked for.
+    pub fn topology(&self) -> &Topology {
+        self.topology.get_or_init(|| Topology::new(self.triangles()))
     }
 
     /// The exact surface that it was rounded from, where that is another.

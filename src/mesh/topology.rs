@@ -27,6 +27,11 @@ impl Topology {
         Topology { twins }
     }
 
+    /// The topology with these twins, of half-edges that have been paired already.
+    pub(crate) fn of_twins(twins: Vec<u32>) -> Topology {
+        Topology { twins }
+    }
+
     /// The half-edge that runs the other way, or [`Topology::NONE`].
     pub fn twin(&self, half_edge: u32) -> u32 {
         self.twins[half_edge as usize]

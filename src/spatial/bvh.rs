@@ -12,6 +12,9 @@ pub struct Bvh {
     levels: Vec<Vec<Aabb>>,
 }
 
+/// A node by its level, counted from the leaves' groups up, and its place there.
+type Node = (usize, usize);
+
 /// Items a leaf group.
 const GROUP: usize = 4;
 
@@ -38,27 +41,65 @@ impl Bvh {
 
     /// Calls `found` for every item whose box touches `target`.
     pub fn touching(&self, boxes: &[Aabb], target: Aabb, mut found: impl FnMut(u32)) {
-        let mut stack = self.root();
-        while let Some((level, node)) = stack.pop() {
-            if !self.levels[level][node].touches(target) {
-                continue;
-            }
-            if level > 0 {
-                stack.extend(self.children(level, node));
-            } else {
-                for &item in self.group(node) {
-                    if boxes[item as usize].touches(target) {
-                        found(item);
-                    }
-                }
+        if let Some(root) = self.root() {
+            self.touching_below(root, boxes, target, &mut found);
+        }
+    }
+
+    fn touching_below(&self, (level, node): Node, boxes: &[Aabb], target: Aabb, found: &mut impl FnMut(u32)) {
+        if !self.levels[level][node].touches(target) {
+            return;
+        }
+        if level > 0 {
+            self.children(level, node).for_each(|child| self.touching_below(child, boxes, target, found));
+            return;
+        }
+        for &item in self.group(node) {
+            if boxes[item as usize].touches(target) {
+                found(item);
             }
         }
     }
 
     /// Calls `found` for every pair of items, one of each tree, whose boxes touch.
     pub fn pairs(&self, boxes: &[Aabb], other: &Bvh, other_boxes: &[Aabb], mut found: impl FnMut(u32, u32)) {
-        let (Some(a), Some(b)) = (self.root().pop(), other.root().pop()) else { return };
-        let mut stack = vec![(a, b)];
+        let (Some(a), Some(b)) = (self.root(), other.root()) else { return };
+        self.pairs_below(&mut vec![(a, b)], boxes, other, other_boxes, &mut found);
+    }
+
+    /// Calls `found` once for every pair of different items whose boxes touch, the smaller index first.
+    pub fn self_pairs(&self, boxes: &[Aabb], mut found: impl FnMut(u32, u32)) {
+        let mut in_order = |i: u32, j: u32| found(i.min(j), i.max(j));
+        let mut nodes = Vec::from_iter(self.root());
+        let mut stack = Vec::new();
+        while let Some(node) = nodes.pop() {
+            if node.0 > 0 {
+                let [left, right] = [0, 1].map(|i| self.children(node.0, node.1).nth(i));
+                nodes.extend([left, right].into_iter().flatten());
+                stack.extend(left.zip(right));
+                self.pairs_below(&mut stack, boxes, self, boxes, &mut in_order);
+                continue;
+            }
+            let group = self.group(node.1);
+            for (place, &i) in group.iter().enumerate() {
+                for &j in &group[place + 1..] {
+                    if boxes[i as usize].touches(boxes[j as usize]) {
+                        in_order(i, j);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Calls `found` for the pairs of items below pairs of nodes, one of each tree, whose boxes touch.
+    fn pairs_below(
+        &self,
+        stack: &mut Vec<(Node, Node)>,
+        boxes: &[Aabb],
+        other: &Bvh,
+        other_boxes: &[Aabb],
+        found: &mut impl FnMut(u32, u32),
+    ) {
         while let Some((a, b)) = stack.pop() {
             if !self.levels[a.0][a.1].touches(other.levels[b.0][b.1]) {
                 continue;
@@ -77,15 +118,6 @@ impl Bvh {
                 stack.extend(other.children(b.0, b.1).map(|child| (a, child)));
             }
         }
-    }
-
-    /// Calls `found` once for every pair of different items whose boxes touch, the smaller index first.
-    pub fn self_pairs(&self, boxes: &[Aabb], mut found: impl FnMut(u32, u32)) {
-        self.pairs(boxes, self, boxes, |i, j| {
-            if i < j {
-                found(i, j);
-            }
-        });
     }
 
     /// The item nearest to a point, given the square of the distance of each; of equal ones the first that is met. `None`
@@ -142,7 +174,7 @@ impl Bvh {
     /// Goes down from the root into every node for which `enter(level, node)` holds, numbered as in [`Bvh::summed`], and
     /// calls `found` for the items of the groups it enters.
     pub fn descend(&self, mut enter: impl FnMut(usize, usize) -> bool, mut found: impl FnMut(u32)) {
-        let mut stack = self.root();
+        let mut stack = Vec::from_iter(self.root());
         while let Some((level, node)) = stack.pop() {
             if !enter(level, node) {
                 continue;
@@ -155,11 +187,11 @@ impl Bvh {
         }
     }
 
-    fn root(&self) -> Vec<(usize, usize)> {
-        if self.levels.is_empty() { Vec::new() } else { vec![(self.levels.len() - 1, 0)] }
+    fn root(&self) -> Option<Node> {
+        self.levels.len().checked_sub(1).map(|top| (top, 0))
     }
 
-    fn children(&self, level: usize, node: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+    fn children(&self, level: usize, node: usize) -> impl Iterator<Item = Node> + use<> {
         let count = self.levels[level - 1].len();
         [2 * node, 2 * node + 1]
             .into_iter()

@@ -61,11 +61,11 @@ impl fmt::Debug for Case {
 }
 
 fn literal(tree: &Tree) -> String {
+    let list = |children: &[Tree]| children.iter().map(literal).collect::<Vec<_>>().join(", ");
     match tree {
         Tree::Leaf(index) => format!("Leaf({index})"),
-        Tree::Node(op, children) => {
-            format!("Node({op:?}, vec![{}])", children.iter().map(literal).collect::<Vec<_>>().join(", "))
-        }
+        Tree::Node(op, children) => format!("Node({op:?}, vec![{}])", list(children)),
+        Tree::AtLeast(least, children) => format!("AtLeast({least}, vec![{}])", list(children)),
     }
 }
 
@@ -77,7 +77,11 @@ fn tree(mut parts: Vec<Tree>, random: &mut SplitMix) -> Tree {
         let group = random.between(2, 3).min(parts.len() as i64) as usize;
         let start = random.below((parts.len() - group + 1) as u64) as usize;
         let children: Vec<Tree> = parts.drain(start..start + group).collect();
-        parts.insert(start, Tree::Node(*random.pick(&OPS), children));
+        let node = match random.below(10) {
+            0 => Tree::AtLeast(random.between(1, group as i64) as u32, children),
+            _ => Tree::Node(*random.pick(&OPS), children),
+        };
+        parts.insert(start, node);
         if parts.len() == 1 {
             return parts.remove(0);
         }

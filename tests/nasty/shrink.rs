@@ -72,6 +72,9 @@ fn renumbered(tree: &Tree, used: &mut Vec<usize>) -> Tree {
         Tree::Node(op, children) => {
             Tree::Node(*op, children.iter().map(|child| renumbered(child, used)).collect())
         }
+        Tree::AtLeast(least, children) => {
+            Tree::AtLeast(*least, children.iter().map(|child| renumbered(child, used)).collect())
+        }
     }
 }
 

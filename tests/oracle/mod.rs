@@ -107,6 +107,9 @@ pub(crate) fn holds(tree: &Tree, inside: &impl Fn(usize) -> bool) -> bool {
                 Op::SymmetricDifference => held.filter(|&h| h).count() % 2 == 1,
             }
         }
+        Tree::AtLeast(least, children) => {
+            *least > 0 && children.iter().filter(|child| holds(child, inside)).count() >= *least as usize
+        }
     }
 }
 

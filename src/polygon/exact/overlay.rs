@@ -141,6 +141,9 @@ impl Strands {
     }
 }
 
+/// Strands of which all pairs are looked at sooner than a tree over them is made.
+const FEW: usize = 24;
+
 /// All strands in pieces that meet only at common ends, or coincide.
 fn cut(
     chart: &Chart,
@@ -151,12 +154,21 @@ fn cut(
 ) -> Vec<Piece> {
     let strands = &strands.strands;
     let boxes: Vec<Aabb> = strands.iter().map(|s| Aabb::of(s.ends.map(|p| points.rounded(p)))).collect();
-    let bvh = Bvh::new(&boxes);
     let mut cuts: Vec<(u32, PointId)> = Vec::new();
-    bvh.self_pairs(&boxes, |i, j| {
+    let mut meet = |i: u32, j: u32| {
         let (a, b) = (&strands[i as usize], &strands[j as usize]);
         cut_pair(chart, points, lines, [a, b], |which, at| cuts.push(([i, j][which], at)));
-    });
+    };
+    let few = boxes.len() <= FEW;
+    let bvh = if few && marks.is_empty() { Bvh::default() } else { Bvh::new(&boxes) };
+    if few {
+        for (j, b) in (0_u32..).zip(&boxes) {
+            let touching = (0..j).filter(|&i| boxes[i as usize].touches(*b));
+            touching.for_each(|i| meet(i, j));
+        }
+    } else {
+        bvh.self_pairs(&boxes, meet);
+    }
     for &mark in marks {
         let place = points.rounded(mark);
         bvh.touching(&boxes, Aabb { min: place, max: place }, |i| {
@@ -205,7 +217,11 @@ fn cut_pair(
 ) {
     let [a, b] = pair;
     let (line_a, line_b) = (&lines[a.line as usize], &lines[b.line as usize]);
-    let sides_of_a = if a.line == b.line { [0, 0] } else { a.ends.map(|p| line_b.side(points, p)) };
+    // A common end lies on both lines, and needs no exact arithmetic to be found there.
+    let side = |line: &Line, of: &Strand, p: PointId| {
+        if of.ends.contains(&p) { 0 } else { line.side(points, p) }
+    };
+    let sides_of_a = if a.line == b.line { [0, 0] } else { a.ends.map(|p| side(line_b, b, p)) };
     if sides_of_a == [0, 0] {
         for (which, other) in [(0, b), (1, a)] {
             for end in other.ends {
@@ -219,7 +235,7 @@ fn cut_pair(
     if sides_of_a[0] * sides_of_a[1] > 0 {
         return;
     }
-    let sides_of_b = b.ends.map(|p| line_a.side(points, p));
+    let sides_of_b = b.ends.map(|p| side(line_a, a, p));
     if sides_of_b[0] * sides_of_b[1] > 0 {
         return;
     }

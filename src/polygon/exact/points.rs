@@ -50,10 +50,19 @@ impl Points {
 
     /// The point at a lattice site.
     pub fn site(&mut self, site: Site) -> PointId {
-        let rounded = Vec3::new(site[0] as f64, site[1] as f64, site[2] as f64);
+        let rounded = rounded(site);
         match self.find(rounded, |known| self.sites[known] == site) {
             Ok(known) => known,
             Err(slot) => self.push(rounded, site, slot),
+        }
+    }
+
+    /// Brings the places in the table of sites that will be asked for next into the cache, all at a time: in a large table
+    /// each of them would have to be waited for.
+    pub(super) fn prefetch(&self, sites: &[Site]) {
+        if !self.slots.is_empty() {
+            let seen = |site: &Site| self.slots[self.first_slot(rounded(*site))];
+            std::hint::black_box(sites.iter().fold(0, |all, site| all ^ seen(site)));
         }
     }
 
@@ -245,6 +254,10 @@ impl Points {
         };
         minor(&a, &b, &cw).plus(&minor(&b, &c, &aw)).plus(&minor(&c, &a, &bw)).signum()
     }
+}
+
+fn rounded(site: Site) -> Vec3 {
+    Vec3::from_array(site.map(|c| c as f64))
 }
 
 /// The integer coordinates of a fraction, when it has them.

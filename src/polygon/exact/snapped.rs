@@ -25,6 +25,20 @@ impl Snapped {
         self.add_at(self.lattice.snap(position), position)
     }
 
+    /// The lattice points nearest to some positions.
+    pub fn add_all(&mut self, positions: &[Vec3]) -> Vec<PointId> {
+        const TOGETHER: usize = 64;
+        let mut all = Vec::with_capacity(positions.len());
+        let mut sites = Vec::with_capacity(TOGETHER);
+        for group in positions.chunks(TOGETHER) {
+            sites.clear();
+            sites.extend(group.iter().map(|&p| self.lattice.snap(p)));
+            self.points.prefetch(&sites);
+            all.extend(sites.iter().zip(group).map(|(&site, &position)| self.add_at(site, position)));
+        }
+        all
+    }
+
     /// A lattice point that was given as a position near it.
     pub fn add_at(&mut self, site: Site, position: Vec3) -> PointId {
         let id = self.points.site(site);

@@ -70,8 +70,11 @@ impl Planar {
         let mut next_edge = 0_u32;
         for (index, &vertex) in self.vertices.iter().enumerate() {
             let index = index as u32;
-            let side =
-                |active: &Active| lines[self.edges[active.edge as usize].line as usize].side(points, vertex);
+            // Edges meet at ends only, so the sweep line reaches a vertex on an edge at its right end.
+            let side = |active: &Active| {
+                let edge = &self.edges[active.edge as usize];
+                if edge.right == index { 0 } else { lines[edge.line as usize].side(points, vertex) }
+            };
             let low = status.partition_point(|active| side(active) > 0);
             let ending = status[low..].iter().take_while(|active| side(active) == 0).count();
             let rights = starting.next_if(|group| group[0].left == index).map_or(0, <[PlanarEdge]>::len);
