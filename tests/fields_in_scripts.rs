@@ -480,6 +480,15 @@ fn tolerances_decide_how_many_triangles_there_are() {
 }
 
 #[test]
+fn errors_are_told_in_model_units() {
+    let text = "scale(3) rotate(20) sdf_torus(2, 1, tolerance = 0.3); translate([30, 0, 0]) sdf_torus(2, 1, tolerance = 0.3);";
+    let built = built(text);
+    // Made once, used at both sizes: the larger one counts.
+    let errors: Vec<f64> = built.report.meshings.iter().map(|meshing| meshing.error).collect();
+    assert!(errors.len() == 1 && (errors[0] - 0.9).abs() < 1e-12, "{errors:?}");
+}
+
+#[test]
 fn tolerances_beyond_reason_end_soon() {
     let limited = BuildOptions { max_triangles: 2_000, ..BuildOptions::default() };
     let refused = |text: &str| csg::build(&recipe(text), &limited).expect_err(text);
@@ -491,6 +500,7 @@ fn tolerances_beyond_reason_end_soon() {
         refused("sdf_sphere(1, tolerance = 1e-30);"),
         BuildError::Meshing(IsoError::TooFine { .. })
     ));
+    assert!(matches!(refused("round(5) cube(4);"), BuildError::Field(_)));
     // A tolerance larger than the shape makes a coarse shape, and no failure.
     let coarse = solid("sdf_sphere(1, tolerance = 50);");
     assert!(coarse.triangles().len() < 2_000);

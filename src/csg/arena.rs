@@ -6,6 +6,7 @@ use super::{Body, Csg, Dimension, Flat, Offset};
 use crate::boolean::Op;
 use crate::math::{Aabb, Vec2, Vec3};
 use crate::numeric::ContentHasher;
+use crate::sdf::greatest_stretch;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -69,6 +70,28 @@ impl<'a> Arena<'a> {
 
     pub(super) fn nodes(&self) -> &[Node<'a>] {
         &self.nodes
+    }
+
+    /// How much the maps above it stretch each field at most, by content.
+    pub(super) fn stretches(&self) -> HashMap<u128, f64> {
+        let mut largest = vec![0.0_f64; self.nodes.len()];
+        largest[self.root_id() as usize] = 1.0;
+        let mut by_content = HashMap::new();
+        for (id, node) in self.nodes.iter().enumerate().rev() {
+            let own = match node.recipe {
+                Csg::Transform { map, .. } => greatest_stretch(map.matrix3),
+                _ => 1.0,
+            };
+            for &child in &node.children {
+                let below = &mut largest[child as usize];
+                *below = below.max(largest[id] * own);
+            }
+            if matches!(node.recipe, Csg::Blend { .. } | Csg::Offset { .. } | Csg::Body(Body::Field(_))) {
+                let known: &mut f64 = by_content.entry(node.key).or_default();
+                *known = known.max(largest[id]);
+            }
+        }
+        by_content
     }
 
     fn push(&mut self, recipe: &'a Csg, children: Vec<NodeId>) {

@@ -32,7 +32,7 @@ impl Solver<'_, '_> {
     fn make_leaf(&mut self, node: NodeId) -> Result<Leaf, BuildError> {
         let (recipe, children) = (self.arena.get(node).recipe, &self.arena.get(node).children);
         match recipe {
-            Csg::Body(body) => self.body(body),
+            Csg::Body(body) => self.body(node, body),
             Csg::LinearExtrude { sweep, .. } => {
                 let region = self.region(children[0])?;
                 self.check_limit(sweep.most_triangles(&region))?;
@@ -51,7 +51,7 @@ impl Solver<'_, '_> {
         }
     }
 
-    fn body(&mut self, body: &Body) -> Result<Leaf, BuildError> {
+    fn body(&mut self, node: NodeId, body: &Body) -> Result<Leaf, BuildError> {
         Ok(match body {
             Body::Cuboid { min, max } => Leaf::of(mesh::cuboid(*min, *max)),
             Body::Sphere { radius, fragments } => {
@@ -68,7 +68,7 @@ impl Solver<'_, '_> {
                 self.check_limit(mesh.triangles.len() as u64)?;
                 Leaf { geometry: Geometry::Mesh(Arc::new(mesh)), clean: false }
             }
-            Body::Field(field) => self.field_leaf(field)?,
+            Body::Field(field) => self.field_leaf(node, field)?,
         })
     }
 

@@ -26,6 +26,8 @@ pub(super) struct Solver<'a, 'b> {
     pub(super) leaves: HashMap<u128, Leaf>,
     pub(super) regions: HashMap<u128, Arc<Region>>,
     solids: HashMap<Key, Part>,
+    /// What maps do to the errors of fields, once that is asked for.
+    pub(super) stretches: Option<HashMap<u128, f64>>,
 }
 
 /// What the solid of a repeated boolean depends on but for a translation: content, linear part, colour.
@@ -81,6 +83,7 @@ impl<'a, 'b> Solver<'a, 'b> {
             leaves: HashMap::new(),
             regions: HashMap::new(),
             solids: HashMap::new(),
+            stretches: None,
         }
     }
 

@@ -14,8 +14,8 @@ use crate::sdf::{Implicit, greatest_stretch};
 /// A mesh that was made of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meshing {
-    /// Greatest distance of its faces from what was asked for, in the coordinates of the recipe that it stands for:
-    /// the tolerance of the mesh, and those of meshes whose distance was taken on the way.
+    /// Greatest distance of its faces from what was asked for, in model units: the tolerance of the mesh, and those of
+    /// meshes whose distance was taken on the way, stretched as the maps around them do.
     pub error: f64,
     /// Number of triangles.
     pub triangles: usize,
@@ -43,7 +43,7 @@ const CELLS_A_TRIANGLE: u64 = 16;
 
 impl Solver<'_, '_> {
     /// The mesh of a field that is a leaf.
-    pub(in crate::csg) fn field_leaf(&mut self, body: &FieldBody) -> Result<Leaf, BuildError> {
+    pub(in crate::csg) fn field_leaf(&mut self, node: NodeId, body: &FieldBody) -> Result<Leaf, BuildError> {
         if let Some(direct) = body.direct() {
             self.check_limit(direct.triangles())?;
             return Ok(Leaf::of(direct.solid()?));
@@ -53,7 +53,7 @@ impl Solver<'_, '_> {
         if bounds.is_empty() {
             return Ok(Leaf::of(Solid::default()));
         }
-        let solid = self.meshed(&field, cut.unwrap_or(bounds), cut.is_some(), body.tolerance, 0.0)?;
+        let solid = self.meshed(node, &field, cut.unwrap_or(bounds), cut.is_some(), [body.tolerance, 0.0])?;
         Ok(Leaf::of(solid))
     }
 
@@ -66,13 +66,13 @@ impl Solver<'_, '_> {
         let Some(plan) = plan::plan(self.arena, node, &mut self.report)? else {
             return Ok(Leaf::of(Solid::default()));
         };
-        let Made { field, error } = self.field(&plan, tolerance)?;
+        let Made { field, error } = self.field(node, &plan, tolerance)?;
         let bounds = self.arena.get(node).bounds;
-        Ok(Leaf::of(self.meshed(&field, bounds, false, tolerance - error, error)?))
+        Ok(Leaf::of(self.meshed(node, &field, bounds, false, [tolerance - error, error])?))
     }
 
-    /// The field of a plan, good to half of `tolerance`.
-    fn field(&mut self, plan: &FieldPlan, tolerance: f64) -> Result<Made, BuildError> {
+    /// The field of a plan, good to half of `tolerance`, as a part of the leaf `node`.
+    fn field(&mut self, node: NodeId, plan: &FieldPlan, tolerance: f64) -> Result<Made, BuildError> {
         if plan.is_formula {
             return Ok(Made { field: plan.promise().clone(), error: 0.0 });
         }
@@ -83,14 +83,14 @@ impl Solver<'_, '_> {
             }
             Way::Extruded => Ok(Made { field: self.extruded(plan.node)?, error: 0.0 }),
             Way::Remeshed => {
-                let part = self.field(&plan.parts[0], 0.5 * tolerance)?;
+                let part = self.field(node, &plan.parts[0], 0.5 * tolerance)?;
                 let rest = 0.5 * tolerance - part.error;
-                let solid = self.meshed(&part.field, plan.parts[0].bounds, false, rest, part.error)?;
+                let solid = self.meshed(node, &part.field, plan.parts[0].bounds, false, [rest, part.error])?;
                 Ok(Made { field: distance(&solid)?, error: 0.5 * tolerance })
             }
             Way::Moved(map) => {
                 let stretch = greatest_stretch(map.matrix3);
-                let part = self.field(&plan.parts[0], tolerance / stretch)?;
+                let part = self.field(node, &plan.parts[0], tolerance / stretch)?;
                 Ok(Made {
                     field: composed(&plan.way, &[part.field], &plan.parts)?,
                     error: part.error * stretch,
@@ -100,7 +100,7 @@ impl Solver<'_, '_> {
                 // Where gradients agree, a blend adds up the errors of both.
                 let share = if matches!(way, Way::Smooth(..)) { 0.5 } else { 1.0 };
                 let parts: Result<Vec<Made>, BuildError> =
-                    plan.parts.iter().map(|part| self.field(part, share * tolerance)).collect();
+                    plan.parts.iter().map(|part| self.field(node, part, share * tolerance)).collect();
                 let parts = parts?;
                 let error = parts.iter().map(|part| part.error).fold(0.0, f64::max) / share;
                 let fields: Vec<Implicit> = parts.into_iter().map(|part| part.field).collect();
@@ -127,6 +127,13 @@ impl Solver<'_, '_> {
         Ok(if middle == 0.0 { field } else { field.translate(Vec3::new(0.0, 0.0, middle))? })
     }
 
+    /// How much the maps above a field stretch it.
+    fn stretch_of(&mut self, node: NodeId) -> f64 {
+        let arena = self.arena;
+        let known = self.stretches.get_or_insert_with(|| arena.stretches());
+        known.get(&arena.get(node).key).copied().unwrap_or(1.0)
+    }
+
     /// The solid of a node in its own coordinates.
     fn solved(&mut self, node: NodeId) -> Result<Solid, BuildError> {
         let spot = Spot { node, map: Affine3::IDENTITY, color: None };
@@ -136,15 +143,15 @@ impl Solver<'_, '_> {
         }
     }
 
-    /// The mesh of a field whose inside lies within a box, or is cut off there. `before` is how far the field itself may
-    /// be off.
+    /// The mesh of a field whose inside lies within a box, or is cut off there, within a tolerance; `before` is how far
+    /// the field itself may be off. It is the leaf `node`, or a part of it.
     fn meshed(
         &mut self,
+        node: NodeId,
         field: &Implicit,
         bounds: Aabb,
         cut: bool,
-        tolerance: f64,
-        before: f64,
+        [tolerance, before]: [f64; 2],
     ) -> Result<Solid, BuildError> {
         let room = Aabb { min: field.bounds().min.max(bounds.min), max: field.bounds().max.min(bounds.max) };
         if room.is_empty() {
@@ -162,7 +169,8 @@ impl Solver<'_, '_> {
         let Meshed { mesh, report } = meshed?;
         let triangles = mesh.triangles().len();
         self.check_limit(triangles as u64)?;
-        self.report.meshings.push(Meshing { error: tolerance + before, triangles, report });
+        let error = (tolerance + before) * self.stretch_of(node);
+        self.report.meshings.push(Meshing { error, triangles, report });
         Ok(mesh)
     }
 }
