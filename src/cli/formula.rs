@@ -49,7 +49,7 @@ impl FormulaArgs {
         let meshed = isosurface::mesh_with_progress(&formula.compile(), &options, &mut |stage| {
             terminal.stage(clock.start(stage));
         });
-        times.append(clock.into_times());
+        times.append(&clock.into_times());
         let Meshed { mesh, report } = meshed.map_err(|error| explain(source, &error))?;
         meshing::warn(source, "the formula", &report, mesh.is_empty(), terminal);
         meshing::row(&report, summary);

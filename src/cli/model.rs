@@ -41,7 +41,7 @@ impl Times {
     }
 
     /// Adds the seconds of stages.
-    pub(super) fn append(&mut self, other: Times) {
+    pub(super) fn append(&mut self, other: &Times) {
         other.stages.iter().for_each(|(name, seconds)| self.add(name, seconds.as_f64().unwrap_or(0.0)));
     }
 
@@ -132,7 +132,7 @@ pub(super) fn build_recipe(
     });
     let fields = clock.into_times();
     times.add("build", -fields.total());
-    times.append(fields);
+    times.append(&fields);
     let built = built.map_err(|error| explain(source, &error, strict))?;
     built.report.notes.iter().for_each(|note| terminal.warn(note.to_string()));
     for Meshing { report, triangles, .. } in &built.report.meshings {

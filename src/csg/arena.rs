@@ -1,7 +1,7 @@
 //! A recipe laid out flat, children before parents, so that nothing that walks it needs the stack.
 
 use super::bounds::local_bounds;
-use super::field::plan::swell;
+use super::field::reach::swell;
 use super::{Body, Csg, Dimension, Flat, Offset};
 use crate::boolean::Op;
 use crate::math::{Aabb, Vec2, Vec3};
@@ -82,13 +82,14 @@ impl<'a> Arena<'a> {
                 Csg::Transform { map, .. } => greatest_stretch(map.matrix3),
                 _ => 1.0,
             };
+            let here = largest[id];
             for &child in &node.children {
                 let below = &mut largest[child as usize];
-                *below = below.max(largest[id] * own);
+                *below = below.max(here * own);
             }
             if matches!(node.recipe, Csg::Blend { .. } | Csg::Offset { .. } | Csg::Body(Body::Field(_))) {
                 let known: &mut f64 = by_content.entry(node.key).or_default();
-                *known = known.max(largest[id]);
+                *known = known.max(here);
             }
         }
         by_content

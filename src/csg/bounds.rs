@@ -47,7 +47,7 @@ pub(super) fn local_bounds(recipe: &Csg, dimension: Option<Dimension>, children:
         Csg::Blend { .. } | Csg::Offset { .. } => {
             let solid = |child: &&&Node<'_>| child.dimension != Some(Dimension::Two);
             let taking_part: Vec<&Node<'_>> = children.iter().filter(solid).copied().collect();
-            proper(padded(field::plan::bounds(recipe, &taking_part).0, recipe_tolerance(recipe)))
+            proper(padded(field::reach::bounds(recipe, &taking_part).0, recipe_tolerance(recipe)))
         }
     }
 }

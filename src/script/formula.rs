@@ -138,7 +138,10 @@ fn dot(a: &[Expr], b: &[Expr]) -> Outcome {
     if a.len() != b.len() {
         return undefined(format!("a product of lists of lengths {} and {} is undefined", a.len(), b.len()));
     }
-    let terms = a.iter().zip(b).map(|(a, b)| a * b);
+    // Matrices that turn and mirror are mostly zeros, which must not make NaN of infinity.
+    let is_zero = |x: &Expr| x.as_constant() == Some(0.0);
+    let pairs = a.iter().zip(b).filter(|(a, b)| !is_zero(a) && !is_zero(b));
+    let terms = pairs.map(|(a, b)| a * b);
     Ok(value(terms.reduce(|sum, term| sum + term).unwrap_or(Expr::constant(0.0))))
 }
 

@@ -18,7 +18,7 @@ const MOST_DIRECTIONS: usize = 48;
 
 /// The shape without what is beyond planes that both `left` and `right` touch from within.
 pub(super) fn cut(shape: Implicit, left: &[Place], right: &[Place]) -> Result<Implicit, BadNumber> {
-    let size = left.iter().chain(right).map(|place| extent(place)).fold(0.0, f64::max);
+    let size = left.iter().chain(right).map(extent).fold(0.0, f64::max);
     let mut whole = shape;
     for normal in directions(left.iter().chain(right)) {
         let [a, b] = [left, right].map(|side| support(side, normal));

@@ -85,7 +85,8 @@ impl Solver<'_, '_> {
             Way::Remeshed => {
                 let part = self.field(node, &plan.parts[0], 0.5 * tolerance)?;
                 let rest = 0.5 * tolerance - part.error;
-                let solid = self.meshed(node, &part.field, plan.parts[0].bounds, false, [rest, part.error])?;
+                let solid =
+                    self.meshed(node, &part.field, plan.parts[0].bounds, false, [rest, part.error])?;
                 Ok(Made { field: distance(&solid)?, error: 0.5 * tolerance })
             }
             Way::Moved(map) => {

@@ -9,6 +9,7 @@ mod leaf;
 mod make;
 pub(super) mod plan;
 pub(super) mod print;
+pub(super) mod reach;
 
 pub(super) use direct::Direct;
 pub use leaf::{FieldBody, FieldShape, Formula};
