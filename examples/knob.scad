@@ -6,7 +6,7 @@ height = 14;
 stem = 9;
 bore = 3.2;
 nut = 6.5;      // across corners, half
-$fe = 0.1;      // largest error of anything round
+$fe = 0.2;      // largest error of anything round
 
 difference() {
   smooth_union(5) {
