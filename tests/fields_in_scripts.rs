@@ -196,10 +196,10 @@ fn flush_faces_stay_flat() {
     assert!(bounds.min.min_element() > -1e-4 && bounds.max.z < 2.0 + 1e-4, "{bounds:?}");
     // Two edges are filled along the whole height, and only those.
     let expected = 80.0 + 48.0 + 2.0 * 2.0 * (1.0 - PI / 4.0);
-    let near = |volume: f64| (expected - 3.0..expected + 0.3).contains(&volume);
+    let near = |volume: f64| (expected - 5.0..expected + 0.3).contains(&volume);
     assert!(near(tee.volume()), "{} {expected}", tee.volume());
     let turned = solid(
-        "$fe = 0.2; rotate([20, 30, 40]) smooth_union(1) { cube([10, 4, 2]); translate([3, 0, 0]) cube([4, 10, 2]); }",
+        "$fe = 0.3; rotate([20, 30, 40]) smooth_union(1) { cube([10, 4, 2]); translate([3, 0, 0]) cube([4, 10, 2]); }",
     );
     assert!(near(turned.volume()), "{} {expected}", turned.volume());
 }
@@ -482,7 +482,7 @@ fn tolerances_decide_how_many_triangles_there_are() {
     let (coarse, fine) = (count("$fe = 0.2; sdf_torus(2, 1);"), count("$fe = 0.05; sdf_torus(2, 1);"));
     assert!(2 * fine > 3 * coarse, "{coarse} {fine}");
     assert_eq!(count("sdf_torus(2, 1, tolerance = 0.2, $fe = 0.01);"), coarse);
-    assert!(count("sdf_torus(2, 1, $fn = 40);") > count("sdf_torus(2, 1, $fn = 12);"));
+    assert!(count("sdf_torus(2, 1, $fn = 20);") > count("sdf_torus(2, 1, $fn = 8);"));
 }
 
 #[test]
