@@ -1,8 +1,10 @@
 //! What booleans promise beyond the right shape: errors, births, labels, the same bits in any order.
 
-use ogee::boolean::{self, BooleanError, Combined, Op, Operand, Options, Tree, evaluate, evaluate_with};
+use ogee::boolean::{
+    self, BooleanError, Combined, Op, Operand, Options, Steps, Tree, evaluate, evaluate_with,
+};
 use ogee::math::{Quat, Vec3};
-use ogee::mesh::{Mesh, Solid, crossing_pairs, cuboid, sphere};
+use ogee::mesh::{Mesh, Solid, components, crossing_pairs, cuboid, sphere};
 
 fn cube(corner: Vec3, size: f64) -> Solid {
     cuboid(corner, corner + Vec3::splat(size))
@@ -182,6 +184,43 @@ fn vertices_away_from_the_cut_keep_their_bits() {
     let solid = evaluate(&Tree::flat(Op::Difference, 2), &[&a, &b]).unwrap().solid;
     let kept = a.positions.iter().filter(|p| solid.positions().contains(p)).count();
     assert!(kept > a.positions.len() / 2);
+}
+
+/// Two wedges that touch along an edge become two others where what was inside is outside.
+#[test]
+fn touching_wedges_change_partners_when_turned_inside_out() {
+    let pair = [cube(Vec3::ZERO, 1.0), cube(Vec3::new(1.0, 1.0, 0.0), 1.0)];
+    let block = cube(Vec3::splat(-1.0), 4.0);
+    let taken_away = Tree::flat(Op::Difference, 3);
+    let at_once = evaluate(&taken_away, &[&block, &pair[0], &pair[1]]).unwrap().solid;
+    let wedges = boolean::union(&pair[0], &pair[1]).solid;
+    assert_eq!(components(wedges.mesh()).len(), 2);
+    let one_by_one = boolean::difference(&block, &wedges).solid;
+    let steps = Options { steps: Steps::Pairs, ..Options::default() };
+    let in_pairs = evaluate_with(&taken_away, &[&block, &pair[0], &pair[1]], &steps).unwrap().solid;
+    for result in [at_once, one_by_one, in_pairs] {
+        // The two cavities are one, joined along both flanks of the edge.
+        assert_eq!(components(result.mesh()).len(), 2);
+        let wedges = boolean::difference(&block, &result).solid;
+        assert_eq!(components(wedges.mesh()).len(), 2);
+    }
+}
+
+#[test]
+fn at_least_two_of_three_slabs() {
+    let slab = |axis: usize| {
+        let mut size = Vec3::splat(3.0);
+        size[axis] = 1.0;
+        cuboid(-0.5 * size, 0.5 * size)
+    };
+    let slabs = [0, 1, 2].map(slab);
+    let all: Vec<&Solid> = slabs.iter().collect();
+    let volume = |least: u32| {
+        let tree = Tree::AtLeast(least, (0..3).map(Tree::Leaf).collect());
+        evaluate(&tree, &all).unwrap().solid.measures().volume
+    };
+    // A cube of 27 cells of a unit: each cell is in as many slabs as it has middle coordinates.
+    assert_eq!([0, 1, 2, 3, 4].map(volume), [0.0, 19.0, 7.0, 1.0, 0.0]);
 }
 
 #[test]

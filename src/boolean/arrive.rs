@@ -21,9 +21,10 @@ pub(super) fn enter<'a>(
     world.places.points.reserve(operands.iter().map(|operand| operand.mesh.positions.len()).sum());
     world.labels = operands.iter().map(|operand| operand.labels).collect();
     let rounds = world.places.lattice() != Lattice::fitting(largest);
+    let mut taken_by = Vec::new();
     let enter = |(i, (operand, topology)): (u32, (&Operand<'a>, Cow<'_, Topology>))| {
         let origin = origin_of(&world, operand, &topology, rounds);
-        Body::of_operand(&mut world, i, operand, &topology, origin.as_deref())
+        Body::of_operand(&mut world, i, operand, &topology, origin.as_deref(), &mut taken_by)
     };
     let bodies = (0..).zip(operands.iter().zip(topologies)).map(enter).collect();
     Ok((world, bodies))
@@ -90,20 +91,25 @@ fn labels_follow_edges(origin: &Origin, operand: &Operand<'_>, topology: &Topolo
 }
 
 impl Body {
-    /// Enters an operand into the world. Triangles without area on the lattice are dropped.
+    /// Enters an operand into the world. Triangles without area on the lattice are dropped. `taken_by` tells for points
+    /// the last operand with a vertex there.
     fn of_operand(
         world: &mut World<'_>,
         index: u32,
         operand: &Operand<'_>,
         topology: &Topology,
         origin: Option<&Origin>,
+        taken_by: &mut Vec<u32>,
     ) -> Body {
         let mesh = operand.mesh;
         let ids = match origin {
             Some(origin) => exact_points(world, &mesh.positions, origin),
             None => world.places.add_all(&mesh.positions),
         };
-        let mut body = Body::default();
+        taken_by.resize(world.points().len().max(taken_by.len()), NONE);
+        let mut shares = |p: &PointId| std::mem::replace(&mut taken_by[p.0 as usize], index) == index;
+        let may_be_pinched = ids.iter().fold(false, |any, p| shares(p) || any);
+        let mut body = Body { may_be_pinched, ..Body::default() };
         body.corners.reserve(mesh.triangles.len());
         body.births.reserve(mesh.triangles.len());
         let mut slots = vec![NONE; mesh.triangles.len()];

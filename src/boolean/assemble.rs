@@ -27,7 +27,7 @@ pub(super) fn assemble<'a>(scene: Scene<'a>, carriers: Carriers, regions: &Regio
         surface.add_face(&mut scene, &mut carriers, &faces, &rims, face);
     }
     surface.join(regions, &rims, &joints);
-    let body = surface.finish(&scene, !touches_itself);
+    let body = surface.finish(&scene, !touches_itself, crowded.contains(&true));
     (scene.world, body)
 }
 
@@ -509,7 +509,7 @@ impl Surface {
         }
     }
 
-    fn finish(self, scene: &Scene<'_>, embedded: bool) -> Body {
+    fn finish(self, scene: &Scene<'_>, embedded: bool, may_be_pinched: bool) -> Body {
         debug_assert!(!self.twins.contains(&NONE), "a half-edge without a twin");
         let bounds = Aabb::of(self.corners.iter().flatten().map(|&p| scene.points().rounded(p)));
         Body {
@@ -520,6 +520,7 @@ impl Surface {
             lines: self.lines,
             bounds,
             embedded,
+            may_be_pinched,
         }
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct Body {
     pub(super) bounds: Aabb,
     /// Whether it is known not to cross itself.
     pub(super) embedded: bool,
+    /// Whether wedges of it may touch along an edge of both.
+    pub(super) may_be_pinched: bool,
 }
 
 impl Body {
@@ -48,6 +50,7 @@ impl Default for Body {
             lines: Vec::new(),
             bounds: Aabb::EMPTY,
             embedded: true,
+            may_be_pinched: false,
         }
     }
 }

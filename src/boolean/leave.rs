@@ -155,19 +155,16 @@ impl Numbered {
         }
     }
 
-    /// One half-edge of each edge between vertices that an edge before it joins too, behind one of that. Operands have
-    /// none, so each runs from a corner of cut faces, which know their plane.
+    /// One half-edge of each edge between vertices that an edge before it joins too, behind one of that. There are none
+    /// where no more than two triangles meet at any place.
     fn double_edges(&self) -> Vec<[u32; 2]> {
-        let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
-        let mut at_cut = vec![false; self.count as usize];
-        for (corners, _) in
-            self.vertices.chunks(3).zip(&self.body.facings).filter(|(_, facing)| facing.known().is_some())
-        {
-            corners.iter().for_each(|&vertex| at_cut[vertex as usize] = true);
+        if !self.body.may_be_pinched {
+            return Vec::new();
         }
+        let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
         let mut edges: Vec<(u32, u32, u32)> = (0..self.vertices.len())
             .map(|h| (self.vertices[h], self.vertices[next(h)], h as u32))
-            .filter(|&(from, to, _)| from < to && (at_cut[from as usize] || at_cut[to as usize]))
+            .filter(|(from, to, _)| from < to)
             .collect();
         edges.sort_unstable();
         edges.windows(2).filter(|e| (e[0].0, e[0].1) == (e[1].0, e[1].1)).map(|e| [e[0].2, e[1].2]).collect()

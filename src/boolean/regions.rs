@@ -111,7 +111,8 @@ fn find_patches(scene: &Scene<'_>, carriers: &Carriers) -> Patches {
     Patches { cell_of_triangle, first_triangle, cell_count }
 }
 
-/// The fins of all covered cells of carriers, and those of untouched triangles along touched ones.
+/// The fins of all covered cells of carriers, and those of untouched triangles along touched ones and wherever more than
+/// two meet: which of them belong together changes when inside and outside are exchanged.
 fn gather_fins(scene: &Scene<'_>, carriers: &Carriers, patches: &Patches) -> (Vec<Fin>, Vec<Plane>) {
     let (mut fins, mut planes) = (Vec::new(), Vec::new());
     for (index, carrier) in (0_u32..).zip(&carriers.carriers) {
@@ -128,9 +129,12 @@ fn gather_fins(scene: &Scene<'_>, carriers: &Carriers, patches: &Patches) -> (Ve
             }
         }
     }
+    let pinched = scene.pinched();
     for (half_edge, &twin) in (0_u32..).zip(&scene.twins) {
         let triangle = half_edge / 3;
-        if carriers.touched[triangle as usize] || !carriers.touched[twin as usize / 3] {
+        if carriers.touched[triangle as usize]
+            || !(carriers.touched[twin as usize / 3] || pinched[half_edge as usize])
+        {
             continue;
         }
         let corners = scene.corners[triangle as usize];

@@ -14,6 +14,7 @@ pub(super) struct Member {
     pub(super) triangles: Range<u32>,
     pub(super) bounds: Aabb,
     pub(super) embedded: bool,
+    may_be_pinched: bool,
 }
 
 /// All bodies together. Half-edge `3 t + i` is side `i` of triangle `t`.
@@ -56,7 +57,12 @@ impl<'a> Scene<'a> {
         let first = self.corners.len() as u32;
         let shift = |twin: u32| if twin == NONE { NONE } else { twin + 3 * first };
         let end = first + body.len() as u32;
-        self.members.push(Member { triangles: first..end, bounds: body.bounds, embedded: body.embedded });
+        self.members.push(Member {
+            triangles: first..end,
+            bounds: body.bounds,
+            embedded: body.embedded,
+            may_be_pinched: body.may_be_pinched,
+        });
         if !body.facings.is_empty() {
             self.facings.resize(first as usize, Facing::UNKNOWN);
             self.facings.extend(body.facings);
@@ -87,6 +93,24 @@ impl<'a> Scene<'a> {
     /// The member that a triangle belongs to.
     pub(super) fn member_of(&self, triangle: u32) -> u32 {
         self.members.partition_point(|member| member.triangles.end <= triangle) as u32
+    }
+
+    /// For each half-edge, whether its member has others than its twin at the same place.
+    pub(super) fn pinched(&self) -> Vec<bool> {
+        let mut pinched = vec![false; self.twins.len()];
+        for member in self.members.iter().filter(|member| member.may_be_pinched) {
+            let Range { start, end } = member.triangles;
+            let place = |half_edge: u32| {
+                let [from, to] = self.ends(half_edge);
+                (from.min(to), from.max(to), half_edge)
+            };
+            let mut places: Vec<(PointId, PointId, u32)> = (3 * start..3 * end).map(place).collect();
+            places.sort_unstable();
+            for group in places.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).filter(|group| group.len() > 2) {
+                group.iter().for_each(|&(.., half_edge)| pinched[half_edge as usize] = true);
+            }
+        }
+        pinched
     }
 
     /// The ends of a half-edge.
