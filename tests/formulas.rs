@@ -54,7 +54,8 @@ fn what_is_refused() {
         ("build half.vm -o a.obj --tolerance 1 --box 0,0,0,1,1", 2, "six numbers are needed, there are 5"),
         ("build half.vm -o a.obj --tolerance 1 --box 0,0,0,1,1,0", 1, "is empty, flat or not finite"),
         ("build plane.vm -o a.obj --tolerance 1", 1, "is proven to hold the shape; give one"),
-        ("build cube.scad -o a.obj --tolerance 1", 2, "--tolerance is for formulas"),
+        ("build cube.scad -o a.obj --tolerance 0", 2, "--tolerance must be positive and finite, it is 0"),
+        ("build half.vm -o a.obj --tolerance 1 --explain", 2, "--explain is for scripts"),
         ("info half.vm", 1, "this is a formula"),
     ];
     for (line, code, message) in cases {

@@ -63,7 +63,7 @@ impl Operation {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
-    let outputs = output::plan_beside(args.summary, &args.output, args.format)?;
+    let outputs = output::plan_beside(args.summary.is_some(), &args.output, args.format)?;
     let sources: Vec<Source> = args.operands.iter().map(|path| Source::typed(path)).collect();
     let mut times = Times::default();
     let meshes = times

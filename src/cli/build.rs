@@ -19,6 +19,7 @@ Examples:
   ogee build bracket.scad -o bracket.obj
   ogee build bracket.scad -o bracket.stl -o bracket.ply -D width=40 -D 'label=\"A\"'
   ogee build bracket.scad --summary json
+  ogee build knob.scad --explain --tolerance 0.05 -o knob.stl
   ogee build teapot.bpt --tolerance 1e-3 -o teapot.obj
   ogee build teapot.bpt --close -o teapot.stl
   ogee build gyroid.vm --box -1,-1,-1,1,1,1 --tolerance 0.01 -o gyroid.stl --summary text
@@ -32,7 +33,7 @@ pub(super) struct Args {
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     input: PathBuf,
     /// Where to write the mesh, in the format of the ending; may be repeated; `-` is standard output
-    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath, required_unless_present = "summary")]
+    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath, required_unless_present_any = ["summary", "explain"])]
     output: Vec<PathBuf>,
     /// Write this format, whatever the ending
     #[arg(long, value_parser = format())]
@@ -40,11 +41,15 @@ pub(super) struct Args {
     /// Print measures and times to standard output
     #[arg(long, value_enum, value_name = "FORM")]
     summary: Option<Form>,
+    /// Print to standard output how a script is built: what becomes a mesh, what a field, how finely. Without an output or
+    /// a summary nothing is made
+    #[arg(long)]
+    explain: bool,
     /// Exit with 4 when a mesh that takes part, or the result, is not closed
     #[arg(long)]
     strict: bool,
-    /// Largest distance between mesh and surface, in model units, for formulas and patches; patches have a thousandth of
-    /// their size by default
+    /// Largest distance between mesh and surface, in model units. Patches have a thousandth of their size by default;
+    /// scripts decide by $fe, $fn, $fa and $fs, and this is the value that $fe starts with
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     tolerance: Option<f64>,
     #[command(flatten)]
@@ -77,10 +82,16 @@ impl Job {
         if let Some(hint) = hint {
             return Err(Stop::about(source, hint));
         }
+        let unusable = |tolerance: &f64| !(*tolerance > 0.0 && tolerance.is_finite());
+        if matches!(kind, Ok(Kind::Script))
+            && let Some(tolerance) = args.tolerance.filter(unusable)
+        {
+            return Err(Stop::Usage(format!("--tolerance must be positive and finite, it is {tolerance}")));
+        }
         if let Some(hint) = kind.as_ref().ok().and_then(|&kind| misplaced(kind, args)) {
             return Err(Stop::Usage(hint.to_owned()));
         }
-        let outputs = output::plan_beside(args.summary, &args.output, args.format)?;
+        let outputs = output::plan_beside(args.summary.is_some() || args.explain, &args.output, args.format)?;
         // A file that is not there is explained where it is read.
         let kind = kind.unwrap_or(Kind::Script);
         Ok(Job { source, kind, outputs, summary: args.summary, strict: args.strict })
@@ -90,9 +101,7 @@ impl Job {
 /// What to say of options that an input of this kind has no use for.
 fn misplaced(kind: Kind, args: &Args) -> Option<&'static str> {
     match kind {
-        Kind::Script if args.tolerance.is_some() => {
-            Some("--tolerance is for formulas and files of patches; a script has $fe")
-        }
+        Kind::Formula | Kind::Patches if args.explain => Some("--explain is for scripts"),
         Kind::Script | Kind::Patches if args.formula.is_given() => Some("--box is for formulas (.vm)"),
         Kind::Script | Kind::Formula if args.patches.is_given() => {
             Some("--angle, --measured, --close and --thickness are for files of patches (.bpt)")
@@ -111,7 +120,16 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<(), Stop> {
         Kind::Formula => return build_formula(&job, args, times, summary, terminal),
         _ => {}
     }
-    let built = model::build(&job.source, &args.script, job.strict, &mut times, terminal)?;
+    let watchdog = args.script.watchdog();
+    let recipe = model::recipe(&job.source, &args.script, args.tolerance, &mut times, terminal)?;
+    if args.explain {
+        print(&model::explanation(&job.source, &recipe)?)?;
+        if job.outputs.is_empty() && job.summary.is_none() {
+            return Ok(());
+        }
+    }
+    let built = model::build_recipe(&job.source, &recipe, &args.script, job.strict, &mut times, terminal)?;
+    drop(watchdog);
     match built.shape {
         Shape::Solid(solid) => write_solid(&job, &solid, &mut times, &mut summary, terminal)?,
         Shape::Region(region) if job.outputs.is_empty() => drop(summary.region(&region)),

@@ -1,16 +1,15 @@
 //! From a formula to a solid.
 
 use super::input::Source;
+use super::meshing::{self, Clock};
 use super::model::Times;
 use super::stop::Stop;
 use super::summary::Summary;
 use super::terminal::Terminal;
 use crate::io::vm;
-use crate::isosurface::{self, IsoError, Meshed, Options, Places, Report, Stage};
+use crate::isosurface::{self, IsoError, Meshed, Options};
 use crate::math::{Aabb, Vec3};
 use crate::mesh::Solid;
-use serde_json::json;
-use std::time::Instant;
 
 /// What formulas are meshed by.
 #[derive(clap::Args)]
@@ -46,42 +45,15 @@ impl FormulaArgs {
             vm::read(&bytes).map_err(|error| Stop::about(source, error))
         })?;
         let options = Options { bounds: self.bounds, ..Options::new(tolerance) };
-        let mut clock = Clock { times, running: None };
+        let mut clock = Clock::default();
         let meshed = isosurface::mesh_with_progress(&formula.compile(), &options, &mut |stage| {
             terminal.stage(clock.start(stage));
         });
-        clock.stop();
+        times.append(&clock.into_times());
         let Meshed { mesh, report } = meshed.map_err(|error| explain(source, &error))?;
-        warn(source, &mesh, &report, terminal);
-        row(&report, summary);
+        meshing::warn(source, "the formula", &report, mesh.is_empty(), terminal);
+        meshing::row(&report, summary);
         Ok(mesh)
-    }
-}
-
-/// Seconds by stage; stages may come again.
-struct Clock<'t> {
-    times: &'t mut Times,
-    running: Option<(&'static str, Instant)>,
-}
-
-impl Clock<'_> {
-    /// Starts a stage and hands back what to show.
-    fn start(&mut self, stage: Stage) -> &'static str {
-        self.stop();
-        let (name, doing) = match stage {
-            Stage::Bounds => ("bounds", "looking for the box"),
-            Stage::Refine => ("refine", "refining"),
-            Stage::Extract => ("extract", "making triangles"),
-            Stage::Certify => ("certify", "proving the tolerance"),
-        };
-        self.running = Some((name, Instant::now()));
-        doing
-    }
-
-    fn stop(&mut self) {
-        if let Some((name, since)) = self.running.take() {
-            self.times.add(name, since.elapsed().as_secs_f64());
-        }
     }
 }
 
@@ -91,42 +63,6 @@ fn explain(source: &Source, error: &IsoError) -> Stop {
         IsoError::TooManyCells { .. } => Stop::Limit(Some(text)),
         _ => Stop::Error(text),
     }
-}
-
-/// Says what a user should know before using the mesh.
-fn warn(source: &Source, mesh: &Solid, report: &Report, terminal: &Terminal) {
-    let say = |places: &Places, what: &str| {
-        if let Some(first) = places.first.first() {
-            let cells = if places.count == 1 { "cell" } else { "cells" };
-            terminal.warn(format!("{source}: {} {cells} {what}, first at {}", places.count, first.center()));
-        }
-    };
-    say(&report.unproven, "where the tolerance is not proven");
-    say(&report.undefined, "where the formula has no value, taken for outside");
-    say(&report.jumps, "where the sign changes by a jump");
-    if mesh.is_empty() {
-        say(&report.unsigned, "where the formula reaches zero but never becomes negative");
-    }
-    if report.capped > 0 {
-        terminal.warn(format!("{source}: the shape leaves the box and is cut off there"));
-    }
-}
-
-fn row(report: &Report, summary: &mut Summary) {
-    summary.row(
-        "surface",
-        json!({
-            "certified": report.certified,
-            "measured": report.measured,
-            "capped": report.capped,
-            "cells": report.cells,
-            "visited": report.visited,
-            "unproven": report.unproven.count,
-            "undefined": report.undefined.count,
-            "jumps": report.jumps.count,
-            "unsigned": report.unsigned.count,
-        }),
-    );
 }
 
 /// The box that was typed.

@@ -13,6 +13,7 @@ mod formula;
 mod host;
 mod info;
 mod input;
+mod meshing;
 mod model;
 mod output;
 mod patches;

@@ -1,12 +1,15 @@
 //! From an input to a shape, with the time each stage took.
 
 use super::input::Source;
+use super::meshing::{self, Clock};
 use super::settings::ScriptArgs;
 use super::stop::Stop;
 use super::terminal::Terminal;
-use crate::csg::{self, BuildError, Built, Progress};
+use crate::csg::{self, BuildError, Built, Csg, Meshing, Progress, Stage};
+use crate::isosurface::IsoError;
 use crate::script::{self, Evaluated, Failure};
 use serde_json::{Map, Value};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The seconds that each stage took, in order.
@@ -37,6 +40,11 @@ impl Times {
         self.stages.insert(name.to_owned(), (before + seconds).into());
     }
 
+    /// Adds the seconds of stages.
+    pub(super) fn append(&mut self, other: &Times) {
+        other.stages.iter().for_each(|(name, seconds)| self.add(name, seconds.as_f64().unwrap_or(0.0)));
+    }
+
     /// Names and seconds.
     pub(super) fn rows(&self) -> Map<String, Value> {
         self.stages.clone()
@@ -50,9 +58,18 @@ impl Times {
 
 /// Evaluates the script in `source`.
 pub(super) fn evaluate(source: &Source, args: &ScriptArgs, terminal: &Terminal) -> Result<Evaluated, Stop> {
+    evaluate_within(source, args, 0.0, terminal)
+}
+
+fn evaluate_within(
+    source: &Source,
+    args: &ScriptArgs,
+    tolerance: f64,
+    terminal: &Terminal,
+) -> Result<Evaluated, Stop> {
     let mut host = args.host(source, terminal)?;
     let main = host.main(source)?;
-    script::evaluate(main, &mut host, &args.options()).map_err(|failure| match failure {
+    script::evaluate(main, &mut host, &args.options_within(tolerance)).map_err(|failure| match failure {
         Failure::Error => Stop::Explained,
         Failure::Limit => Stop::Limit(None),
     })
@@ -69,27 +86,76 @@ pub(super) fn build(
 ) -> Result<Built, Stop> {
     let _watchdog = args.watchdog();
     let evaluated = times.stage(terminal, "evaluate", "evaluating", || evaluate(source, args, terminal))?;
-    let mut show = |progress: Progress| {
-        terminal.stage(format!("building, {} of {} steps", progress.done, progress.total));
+    build_recipe(source, &evaluated.recipe, args, strict, times, terminal)
+}
+
+/// The recipe of the script in `source`, evaluated with this first value of `$fe`.
+pub(super) fn recipe(
+    source: &Source,
+    args: &ScriptArgs,
+    tolerance: Option<f64>,
+    times: &mut Times,
+    terminal: &Terminal,
+) -> Result<Arc<Csg>, Stop> {
+    let tolerance = tolerance.unwrap_or(0.0);
+    let work = || evaluate_within(source, args, tolerance, terminal);
+    Ok(times.stage(terminal, "evaluate", "evaluating", work)?.recipe)
+}
+
+/// How a recipe will be built, in words.
+pub(super) fn explanation(source: &Source, recipe: &Csg) -> Result<String, Stop> {
+    csg::explain(recipe).map_err(|error| explain(source, &error, false))
+}
+
+/// Builds the shape of a recipe; what fields take has stages of its own. See [`build`].
+pub(super) fn build_recipe(
+    source: &Source,
+    recipe: &Csg,
+    args: &ScriptArgs,
+    strict: bool,
+    times: &mut Times,
+    terminal: &Terminal,
+) -> Result<Built, Stop> {
+    let mut clock = Clock::default();
+    let mut show = |Progress { done, total, stage }: Progress| {
+        let doing = match stage {
+            Stage::Fields(stage) => clock.start(stage),
+            Stage::Solids => {
+                clock.stop();
+                "building"
+            }
+        };
+        terminal.stage(format!("{doing}, {done} of {total} steps"));
     };
     let built = times.stage(terminal, "build", "building", || {
-        csg::build_with_progress(&evaluated.recipe, &args.build_options(), &mut show)
+        csg::build_with_progress(recipe, &args.build_options(), &mut show)
     });
+    let fields = clock.into_times();
+    times.add("build", -fields.total());
+    times.append(&fields);
     let built = built.map_err(|error| explain(source, &error, strict))?;
     built.report.notes.iter().for_each(|note| terminal.warn(note.to_string()));
+    for Meshing { report, triangles, .. } in &built.report.meshings {
+        meshing::warn(source, "a field", report, *triangles == 0, terminal);
+    }
     Ok(built)
 }
 
 fn explain(source: &Source, error: &BuildError, strict: bool) -> Stop {
     let text = format!("{source}: {error}");
     match error {
-        BuildError::Limit { .. } | BuildError::TooDeep { .. } => Stop::Limit(Some(text)),
+        BuildError::Limit { .. }
+        | BuildError::TooDeep { .. }
+        | BuildError::TooManyShapes { .. }
+        | BuildError::Meshing(IsoError::TooManyCells { .. }) => Stop::Limit(Some(text)),
         BuildError::NotClosed { .. } if strict => Stop::NotClosed(text),
         BuildError::NotClosed { .. }
         | BuildError::NonFinite { .. }
         | BuildError::Sweep(_)
         | BuildError::Hull(_)
         | BuildError::Surface(_)
-        | BuildError::Curves(_) => Stop::Error(text),
+        | BuildError::Curves(_)
+        | BuildError::Field(_)
+        | BuildError::Meshing(_) => Stop::Error(text),
     }
 }

@@ -3,7 +3,6 @@
 
 use super::input;
 use super::stop::Stop;
-use super::summary::Form;
 use crate::io::{Format, WriteError, obj, write_mesh};
 use crate::math::Vec3;
 use crate::mesh::Mesh;
@@ -34,13 +33,13 @@ pub(super) struct Output {
 
 /// [`plan`], where a summary may want standard output.
 pub(super) fn plan_beside(
-    summary: Option<Form>,
+    prints: bool,
     typed: &[PathBuf],
     format: Option<Format>,
 ) -> Result<Vec<Output>, Stop> {
     let outputs = plan(typed, format)?;
-    if summary.is_some() && outputs.iter().any(|output| output.name().is_none()) {
-        return Err(Stop::Usage("-o - and --summary both want standard output".to_owned()));
+    if prints && outputs.iter().any(|output| output.name().is_none()) {
+        return Err(Stop::Usage("-o - and what is printed both want standard output".to_owned()));
     }
     Ok(outputs)
 }

@@ -96,6 +96,11 @@ struct Limits {
 }
 
 impl ScriptArgs {
+    /// The evaluator's options, with this first value of `$fe`.
+    pub(super) fn options_within(&self, tolerance: f64) -> script::Options {
+        script::Options { tolerance, ..self.options() }
+    }
+
     /// The evaluator's options.
     pub(super) fn options(&self) -> script::Options {
         script::Options {

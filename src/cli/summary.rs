@@ -62,13 +62,16 @@ impl Summary {
 
     /// Adds how the build went.
     pub(super) fn report(&mut self, report: &Report) -> &mut Summary {
-        let Report { made, booleans, reused, skipped, certificate, notes: _ } = report;
+        let Report { made, booleans, reused, skipped, certificate, meshings, notes: _ } = report;
         self.row(
             "steps",
             json!({ "made": made, "booleans": booleans, "reused": reused, "skipped": skipped }),
         );
         if *booleans > 0 {
             self.certificate(certificate);
+        }
+        if !meshings.is_empty() {
+            super::meshing::rows(meshings, self);
         }
         self
     }

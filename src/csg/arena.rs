@@ -1,10 +1,12 @@
 //! A recipe laid out flat, children before parents, so that nothing that walks it needs the stack.
 
 use super::bounds::local_bounds;
-use super::{Body, Csg, Dimension, Flat};
+use super::field::reach::swell;
+use super::{Body, Csg, Dimension, Flat, Offset};
 use crate::boolean::Op;
 use crate::math::{Aabb, Vec2, Vec3};
 use crate::numeric::ContentHasher;
+use crate::sdf::greatest_stretch;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -25,6 +27,8 @@ pub(super) struct Node<'a> {
     /// A box around the shape, in its own coordinates. Plane regions reach from 0 to 1 in z, so that boxes that overlap
     /// do so in their interiors.
     pub(super) bounds: Aabb,
+    /// The places where the field of the shape is below k > 0 are within `swell` times k of the box; 1 for exact distances.
+    pub(super) swell: f64,
     /// Number of leaves below, each as often as it occurs.
     pub(super) leaves: u64,
 }
@@ -68,20 +72,48 @@ impl<'a> Arena<'a> {
         &self.nodes
     }
 
+    /// How much the maps above it stretch each field at most, by content.
+    pub(super) fn stretches(&self) -> HashMap<u128, f64> {
+        let mut largest = vec![0.0_f64; self.nodes.len()];
+        largest[self.root_id() as usize] = 1.0;
+        let mut by_content = HashMap::new();
+        for (id, node) in self.nodes.iter().enumerate().rev() {
+            let own = match node.recipe {
+                Csg::Transform { map, .. } => greatest_stretch(map.matrix3),
+                _ => 1.0,
+            };
+            let here = largest[id];
+            for &child in &node.children {
+                let below = &mut largest[child as usize];
+                *below = below.max(here * own);
+            }
+            if matches!(node.recipe, Csg::Blend { .. } | Csg::Offset { .. } | Csg::Body(Body::Field(_))) {
+                let known: &mut f64 = by_content.entry(node.key).or_default();
+                *known = known.max(here);
+            }
+        }
+        by_content
+    }
+
     fn push(&mut self, recipe: &'a Csg, children: Vec<NodeId>) {
         let of = |&id: &NodeId| self.get(id);
         let dimension = match recipe {
             Csg::Flat(_) => Some(Dimension::Two),
             Csg::Body(_) | Csg::LinearExtrude { .. } | Csg::RotateExtrude { .. } => Some(Dimension::Three),
+            // Only solids take part.
+            Csg::Blend { .. } | Csg::Offset { .. } => {
+                children.iter().any(|child| of(child).dimension.is_some()).then_some(Dimension::Three)
+            }
             _ => children.iter().find_map(|child| of(child).dimension),
         };
-        let bounds = local_bounds(recipe, dimension, &children.iter().map(of).collect::<Vec<_>>());
+        let below = children.iter().map(of).collect::<Vec<_>>();
+        let (bounds, swell) = (local_bounds(recipe, dimension, &below), swell(recipe, &below));
         let key = key(recipe, children.iter().map(|child| of(child).key));
         let leaves = match recipe {
             Csg::Flat(_) | Csg::Body(_) => 1,
             _ => children.iter().fold(0, |sum: u64, child| sum.saturating_add(of(child).leaves)),
         };
-        self.nodes.push(Node { recipe, children, key, dimension, bounds, leaves });
+        self.nodes.push(Node { recipe, children, key, dimension, bounds, swell, leaves });
     }
 }
 
@@ -101,15 +133,7 @@ fn key(recipe: &Csg, children: impl Iterator<Item = u128>) -> u128 {
             hash.integers([21]);
             hash.numbers(color.map(f64::from));
         }
-        Csg::Combine { op, .. } => hash.integers([
-            22,
-            match op {
-                Op::Union => 0,
-                Op::Intersection => 1,
-                Op::Difference => 2,
-                Op::SymmetricDifference => 3,
-            },
-        ]),
+        Csg::Combine { op, .. } => hash.integers([22, number(*op)]),
         Csg::Hull { .. } => hash.integers([23]),
         Csg::LinearExtrude { sweep, .. } => {
             hash.integers([24, u64::from(sweep.center), u64::from(sweep.slices)]);
@@ -121,11 +145,33 @@ fn key(recipe: &Csg, children: impl Iterator<Item = u128>) -> u128 {
             hash.integers([25, u64::from(sweep.fragments)]);
             hash.numbers([sweep.angle, sweep.start]);
         }
+        Csg::Blend { op, blend, tolerance, .. } => {
+            hash.integers([26, number(*op), blend.kind()]);
+            hash.numbers([blend.size(), *tolerance]);
+        }
+        Csg::Offset { how, tolerance, .. } => {
+            let kind = match how {
+                Offset::By(_) => 0,
+                Offset::Shell(_) => 1,
+                Offset::Round(_) => 2,
+            };
+            hash.integers([27, kind]);
+            hash.numbers([how.size(), *tolerance]);
+        }
     }
     for child in children {
         hash.content(child);
     }
     hasher.finish()
+}
+
+fn number(op: Op) -> u64 {
+    match op {
+        Op::Union => 0,
+        Op::Intersection => 1,
+        Op::Difference => 2,
+        Op::SymmetricDifference => 3,
+    }
 }
 
 fn hash_flat(hash: &mut ContentHasher, flat: &Flat) {
@@ -170,6 +216,10 @@ fn hash_body(hash: &mut ContentHasher, body: &Body) {
         Body::Surface(surface) => {
             hash.integers([14]);
             surface.hash(hash);
+        }
+        Body::Field(field) => {
+            hash.integers([15]);
+            field.hash(hash);
         }
     }
 }

@@ -1,4 +1,5 @@
 use super::arena::{Arena, Node};
+use super::field;
 use super::frame::{mapped_box, overlap, plane_part, widened};
 use super::{Body, Csg, Dimension, Flat, LinearSweep, RotateSweep};
 use crate::boolean::Op;
@@ -43,6 +44,11 @@ pub(super) fn local_bounds(recipe: &Csg, dimension: Option<Dimension>, children:
         }
         Csg::LinearExtrude { sweep, .. } => linear_bounds(sweep, flat_child(children)),
         Csg::RotateExtrude { sweep, .. } => rotate_bounds(sweep, flat_child(children)),
+        Csg::Blend { .. } | Csg::Offset { .. } => {
+            let solid = |child: &&&Node<'_>| child.dimension != Some(Dimension::Two);
+            let taking_part: Vec<&Node<'_>> = children.iter().filter(solid).copied().collect();
+            proper(padded(field::reach::bounds(recipe, &taking_part).0, recipe_tolerance(recipe)))
+        }
     }
 }
 
@@ -73,6 +79,22 @@ fn body_bounds(body: &Body) -> Aabb {
         }
         Body::Mesh(mesh) => mesh.bounds(),
         Body::Surface(surface) => surface.bounds(),
+        Body::Field(field) => proper(padded(field.bounds(), field.tolerance)),
+    }
+}
+
+/// The box of a mesh that may be this far from its surface.
+fn padded(bounds: Aabb, tolerance: f64) -> Aabb {
+    if bounds.is_empty() {
+        return bounds;
+    }
+    Aabb { min: bounds.min - Vec3::splat(tolerance), max: bounds.max + Vec3::splat(tolerance) }
+}
+
+fn recipe_tolerance(recipe: &Csg) -> f64 {
+    match recipe {
+        Csg::Blend { tolerance, .. } | Csg::Offset { tolerance, .. } => *tolerance,
+        _ => 0.0,
     }
 }
 

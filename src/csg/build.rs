@@ -2,12 +2,14 @@ use super::arena::Arena;
 use super::frame::is_finite;
 use super::plan::{self, Spot, Uses};
 use super::solve::Solver;
-use super::{Body, Csg, Dimension, Flat};
+use super::{Body, Csg, Dimension, Flat, Meshing};
 use crate::boolean::{BooleanError, Certificate};
+use crate::isosurface::{self, IsoError};
 use crate::math::Affine3;
 use crate::mesh::{Defects, Solid, TooLarge};
 use crate::numeric::Unfit;
 use crate::polygon::{Region, RegionError};
+use crate::sdf::BadNumber;
 use crate::surface::SurfaceError;
 use crate::tessellate::{CloseError, SweepError};
 use std::fmt;
@@ -67,6 +69,8 @@ pub struct Report {
     pub skipped: u64,
     /// What is known of all results of booleans together.
     pub certificate: Certificate,
+    /// Meshes that were made of fields, in the order in which they were made.
+    pub meshings: Vec<Meshing>,
     /// What the user may want to know, each kind once.
     pub notes: Vec<Note>,
 }
@@ -141,6 +145,17 @@ pub enum BuildError {
     Surface(CloseError),
     /// What a surface is made of does not make one.
     Curves(SurfaceError),
+    /// What a field is made of does not make one.
+    Field(BadNumber),
+    /// A field could not be meshed.
+    Meshing(IsoError),
+    /// More shapes in one field than can be told apart in reasonable time.
+    TooManyShapes {
+        /// How many there are.
+        shapes: u64,
+        /// How many there may be.
+        most: u64,
+    },
 }
 
 impl fmt::Display for BuildError {
@@ -160,6 +175,11 @@ impl fmt::Display for BuildError {
             BuildError::Hull(error) => write!(f, "hull: {error}"),
             BuildError::Surface(error) => error.fmt(f),
             BuildError::Curves(error) => error.fmt(f),
+            BuildError::Field(error) => write!(f, "field: {error}"),
+            BuildError::Meshing(error) => write!(f, "meshing a field: {error}"),
+            BuildError::TooManyShapes { shapes, most } => {
+                write!(f, "{shapes} shapes in one field, where {most} are allowed")
+            }
         }
     }
 }
@@ -169,6 +189,18 @@ impl std::error::Error for BuildError {}
 impl From<SweepError> for BuildError {
     fn from(error: SweepError) -> BuildError {
         BuildError::Sweep(error)
+    }
+}
+
+impl From<BadNumber> for BuildError {
+    fn from(error: BadNumber) -> BuildError {
+        BuildError::Field(error)
+    }
+}
+
+impl From<IsoError> for BuildError {
+    fn from(error: IsoError) -> BuildError {
+        BuildError::Meshing(error)
     }
 }
 
@@ -213,6 +245,17 @@ pub struct Progress {
     pub done: u64,
     /// Steps in all, as far as can be foreseen; never less than `done`.
     pub total: u64,
+    /// What is being done.
+    pub stage: Stage,
+}
+
+/// What a build is at, for those who measure time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Making shapes and joining them.
+    Solids,
+    /// Meshing a field.
+    Fields(isosurface::Stage),
 }
 
 /// Cooks a recipe.
@@ -242,7 +285,7 @@ pub fn build(recipe: &Csg, options: &BuildOptions) -> Result<Built, BuildError> 
     build_with_progress(recipe, options, &mut |_| ())
 }
 
-/// [`build`], with a call after every step.
+/// [`build`], with a call after every step and wherever the stage changes.
 ///
 /// # Errors
 /// [`BuildError`].
@@ -252,7 +295,7 @@ pub fn build_with_progress(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Built, BuildError> {
     let arena = Arena::new(recipe);
-    arena.nodes().iter().try_for_each(|node| check_numbers(node.recipe))?;
+    check_all(&arena)?;
     let uses = Uses::of(&arena);
     let spot = Spot { node: arena.root_id(), map: Affine3::IDENTITY, color: None };
     let mut report = Report::default();
@@ -270,6 +313,11 @@ pub fn build_with_progress(
         }
     };
     Ok(Built { shape, colors, report: solver.into_report() })
+}
+
+/// Refuses numbers that cannot be used.
+pub(super) fn check_all(arena: &Arena<'_>) -> Result<(), BuildError> {
+    arena.nodes().iter().try_for_each(|node| check_numbers(node.recipe))
 }
 
 fn check_numbers(recipe: &Csg) -> Result<(), BuildError> {
@@ -290,6 +338,13 @@ fn check_numbers(recipe: &Csg) -> Result<(), BuildError> {
         }
         Csg::Body(Body::Mesh(mesh)) => ("polyhedron", mesh.positions.iter().all(|point| point.is_finite())),
         Csg::Body(Body::Surface(surface)) => ("surface", surface.is_sound()),
+        Csg::Body(Body::Field(field)) => return Ok(field.check()?),
+        Csg::Blend { blend, tolerance, .. } => {
+            ("smooth boolean", blend.size().is_finite() && tolerance.is_finite())
+        }
+        Csg::Offset { how, tolerance, .. } => {
+            ("offset of a solid", how.size().is_finite() && tolerance.is_finite())
+        }
     };
     if is_sound { Ok(()) } else { Err(BuildError::NonFinite { what }) }
 }

@@ -32,7 +32,7 @@ impl Solver<'_, '_> {
     fn make_leaf(&mut self, node: NodeId) -> Result<Leaf, BuildError> {
         let (recipe, children) = (self.arena.get(node).recipe, &self.arena.get(node).children);
         match recipe {
-            Csg::Body(body) => self.body(body),
+            Csg::Body(body) => self.body(node, body),
             Csg::LinearExtrude { sweep, .. } => {
                 let region = self.region(children[0])?;
                 self.check_limit(sweep.most_triangles(&region))?;
@@ -44,13 +44,14 @@ impl Solver<'_, '_> {
                 Ok(Leaf::of(rotate_extrude(&region, sweep)?))
             }
             Csg::Hull { .. } => Ok(Leaf::of(convex_hull(&self.hull_points(node)?)?)),
+            Csg::Blend { .. } | Csg::Offset { .. } => self.smooth_leaf(node),
             Csg::Nothing | Csg::Flat(_) | Csg::Transform { .. } | Csg::Color { .. } | Csg::Combine { .. } => {
                 unreachable!("plans have no such leaf in space")
             }
         }
     }
 
-    fn body(&mut self, body: &Body) -> Result<Leaf, BuildError> {
+    fn body(&mut self, node: NodeId, body: &Body) -> Result<Leaf, BuildError> {
         Ok(match body {
             Body::Cuboid { min, max } => Leaf::of(mesh::cuboid(*min, *max)),
             Body::Sphere { radius, fragments } => {
@@ -67,11 +68,12 @@ impl Solver<'_, '_> {
                 self.check_limit(mesh.triangles.len() as u64)?;
                 Leaf { geometry: Geometry::Mesh(Arc::new(mesh)), clean: false }
             }
+            Body::Field(field) => self.field_leaf(node, field)?,
         })
     }
 
     /// The region of a plane recipe in its own coordinates, made once; empty for a solid, with a note.
-    fn region(&mut self, node: NodeId) -> Result<Arc<Region>, BuildError> {
+    pub(super) fn region(&mut self, node: NodeId) -> Result<Arc<Region>, BuildError> {
         let (key, dimension) = (self.arena.get(node).key, self.arena.get(node).dimension);
         if dimension == Some(Dimension::Three) {
             self.report.note(Note::MixedDimensions);

@@ -6,6 +6,8 @@
 mod arena;
 mod bounds;
 mod build;
+mod explain;
+mod field;
 mod flat;
 mod frame;
 mod leaf;
@@ -17,8 +19,10 @@ mod surface;
 
 pub use bounds::bounds;
 pub use build::{
-    BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, build, build_with_progress,
+    BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, Stage, build, build_with_progress,
 };
+pub use explain::explain;
+pub use field::{FieldBody, FieldShape, Formula, Meshing, Offset};
 pub use parametric::Parametric;
 pub use print::print;
 pub use surface::{Explicit, SurfaceBody};
@@ -26,6 +30,7 @@ pub use surface::{Explicit, SurfaceBody};
 use crate::boolean::Op;
 use crate::math::{Affine3, Vec2, Vec3};
 use crate::mesh::Mesh;
+use crate::sdf::Blend;
 use std::sync::Arc;
 
 pub use crate::tessellate::{LinearSweep, RotateSweep};
@@ -77,6 +82,26 @@ pub enum Csg {
         /// How.
         sweep: RotateSweep,
         /// The region; it must not cross x = 0.
+        child: Arc<Csg>,
+    },
+    /// A boolean of solids with the edges between them filled or rounded.
+    Blend {
+        /// The operation.
+        op: Op,
+        /// How edges are filled; its size is not negative.
+        blend: Blend,
+        /// Greatest distance between the mesh and the surface, either way.
+        tolerance: f64,
+        /// Its operands, in order.
+        children: Vec<Arc<Csg>>,
+    },
+    /// A solid with its surface moved, made a wall, or rounded.
+    Offset {
+        /// What is done to it.
+        how: Offset,
+        /// Greatest distance between the mesh and the surface, either way.
+        tolerance: f64,
+        /// The solid.
         child: Arc<Csg>,
     },
 }
@@ -135,6 +160,8 @@ pub enum Body {
     Mesh(Arc<Mesh>),
     /// A surface with its boundary closed, or a thickness.
     Surface(Arc<SurfaceBody>),
+    /// The inside of a field.
+    Field(Arc<FieldBody>),
 }
 
 /// Whether a recipe describes a region of the plane or a solid.
@@ -159,8 +186,9 @@ impl Csg {
             Csg::Transform { child, .. }
             | Csg::Color { child, .. }
             | Csg::LinearExtrude { child, .. }
-            | Csg::RotateExtrude { child, .. } => std::slice::from_ref(child),
-            Csg::Combine { children, .. } | Csg::Hull { children } => children,
+            | Csg::RotateExtrude { child, .. }
+            | Csg::Offset { child, .. } => std::slice::from_ref(child),
+            Csg::Combine { children, .. } | Csg::Hull { children } | Csg::Blend { children, .. } => children,
         }
     }
 
@@ -171,11 +199,14 @@ impl Csg {
             Csg::Transform { child, .. }
             | Csg::Color { child, .. }
             | Csg::LinearExtrude { child, .. }
-            | Csg::RotateExtrude { child, .. } => {
+            | Csg::RotateExtrude { child, .. }
+            | Csg::Offset { child, .. } => {
                 let is_chain = Arc::get_mut(child).is_some_and(|child| !child.children().is_empty());
                 if is_chain { vec![std::mem::replace(child, Arc::new(Csg::Nothing))] } else { Vec::new() }
             }
-            Csg::Combine { children, .. } | Csg::Hull { children } => std::mem::take(children),
+            Csg::Combine { children, .. } | Csg::Hull { children } | Csg::Blend { children, .. } => {
+                std::mem::take(children)
+            }
         }
     }
 }

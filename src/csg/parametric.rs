@@ -1,6 +1,6 @@
 use crate::math::{Aabb, Vec3};
 use crate::numeric::ContentHasher;
-use crate::sdf::{Expr, Field, Operation};
+use crate::sdf::{Binary, Expr, Field, Operation, Unary};
 use crate::surface::{Formula, Sides, SurfaceError};
 
 /// A surface by formulas of two parameters, kept as plain operations so that equal ones are equal.
@@ -21,9 +21,12 @@ impl Parametric {
     ///
     /// # Errors
     /// [`SurfaceError::Parameter`] when a range is not finite and ascending, [`SurfaceError::NotPlain`] when a coordinate
-    /// is no formula in plain operations.
+    /// is no formula in plain operations, or jumps from one formula to another.
     pub fn new(coordinates: [Expr; 3], domain: [[f64; 2]; 2]) -> Result<Parametric, SurfaceError> {
-        let plain = |axis: usize| coordinates[axis].operations().ok_or(SurfaceError::NotPlain { axis });
+        let plain = |axis: usize| {
+            let operations = coordinates[axis].operations();
+            operations.filter(|all| !all.iter().any(chooses)).ok_or(SurfaceError::NotPlain { axis })
+        };
         let operations = [plain(0)?, plain(1)?, plain(2)?];
         Formula::new(coordinates, domain)?;
         Ok(Parametric { coordinates: operations, domain })
@@ -100,4 +103,9 @@ impl Parametric {
             }
         }
     }
+}
+
+/// Whether an operation is part of a choice between formulas: a surface may break there.
+fn chooses(operation: &Operation) -> bool {
+    matches!(operation, Operation::Unary(Unary::Not, _) | Operation::Binary(Binary::And | Binary::Or, ..))
 }

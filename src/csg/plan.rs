@@ -118,6 +118,7 @@ impl Planner<'_, '_> {
             }
             _ => {
                 let bounds = mapped_box(&spot.map, node.bounds);
+                let spot = Spot { color: spot.color.or_else(|| self.first_color(spot.node)), ..spot };
                 (!bounds.is_empty())
                     .then_some(Placed { outer: None, plan: Plan { bounds, kind: Kind::Leaf(spot) } })
             }
@@ -155,6 +156,20 @@ impl Planner<'_, '_> {
                     spot = Spot { node: node.children[0], color: spot.color.or(Some(*color)), ..spot };
                 }
                 _ => return Ok(Some((outer, spot))),
+            }
+        }
+    }
+
+    /// What flows together has one colour: that of the first child of a smooth operator.
+    fn first_color(&self, mut node: NodeId) -> Option<Color> {
+        if !matches!(self.arena.get(node).recipe, Csg::Blend { .. } | Csg::Offset { .. }) {
+            return None;
+        }
+        loop {
+            let of = self.arena.get(node);
+            match of.recipe {
+                Csg::Color { color, .. } => return Some(*color),
+                _ => node = *of.children.first()?,
             }
         }
     }

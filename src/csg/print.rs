@@ -1,3 +1,4 @@
+use super::field::print::{body_call as field_call, operator_call};
 use super::{Body, Csg, Explicit, Flat, LinearSweep, Parametric, RotateSweep, SurfaceBody};
 use crate::boolean::Op;
 use crate::curve::Spline;
@@ -56,6 +57,7 @@ fn call(recipe: &Csg) -> String {
         Csg::Hull { .. } => "hull()".to_owned(),
         Csg::LinearExtrude { sweep, .. } => linear_call(sweep),
         Csg::RotateExtrude { sweep, .. } => rotate_call(sweep),
+        Csg::Blend { .. } | Csg::Offset { .. } => operator_call(recipe),
     }
 }
 
@@ -99,6 +101,7 @@ fn body_call(body: &Body) -> String {
         }
         Body::Mesh(mesh) => mesh_call(mesh),
         Body::Surface(surface) => surface_call(surface),
+        Body::Field(field) => field_call(field),
     }
 }
 
@@ -254,15 +257,15 @@ fn vec2(v: Vec2) -> String {
     list(v.to_array().into_iter().map(number))
 }
 
-fn vec3(v: Vec3) -> String {
+pub(super) fn vec3(v: Vec3) -> String {
     list(v.to_array().into_iter().map(number))
 }
 
-fn list(items: impl Iterator<Item = String>) -> String {
+pub(super) fn list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value.is_finite() { shortest(value + 0.0) } else { not_finite(value) }
 }
 

@@ -1,7 +1,7 @@
 //! Carrying out a plan.
 
 use super::arena::{Arena, NodeId};
-use super::build::{BuildError, BuildOptions, Color, Note, Progress, Report};
+use super::build::{BuildError, BuildOptions, Color, Note, Progress, Report, Stage};
 use super::frame::{is_identity, widened};
 use super::plan::{self, Kind, Plan, Spot, Uses};
 use crate::boolean::{self, Op, Operand, Tree};
@@ -26,6 +26,8 @@ pub(super) struct Solver<'a, 'b> {
     pub(super) leaves: HashMap<u128, Leaf>,
     pub(super) regions: HashMap<u128, Arc<Region>>,
     solids: HashMap<Key, Part>,
+    /// What maps do to the errors of fields, once that is asked for.
+    pub(super) stretches: Option<HashMap<u128, f64>>,
 }
 
 /// What the solid of a repeated boolean depends on but for a translation: content, linear part, colour.
@@ -76,11 +78,12 @@ impl<'a, 'b> Solver<'a, 'b> {
             options,
             resolution: options.resolution * arena.root().bounds.size().max_element(),
             progress,
-            steps: Progress { done: 0, total },
+            steps: Progress { done: 0, total, stage: Stage::Solids },
             spent: 0,
             leaves: HashMap::new(),
             regions: HashMap::new(),
             solids: HashMap::new(),
+            stretches: None,
         }
     }
 
@@ -116,7 +119,13 @@ impl<'a, 'b> Solver<'a, 'b> {
 
     pub(super) fn step(&mut self) {
         let done = self.steps.done + 1;
-        self.steps = Progress { done, total: self.steps.total.max(done) };
+        self.steps = Progress { done, total: self.steps.total.max(done), ..self.steps };
+        (self.progress)(self.steps);
+    }
+
+    /// Tells what is done from now on.
+    pub(super) fn show(&mut self, stage: Stage) {
+        self.steps.stage = stage;
         (self.progress)(self.steps);
     }
 

@@ -14,17 +14,12 @@ const STACK_A_CALL: usize = 4096;
 /// Steps between two looks at memory.
 const STEPS_A_LOOK: u64 = 256;
 
-/// Most operations of all formulas of a script, of about a hundred bytes each.
-const MOST_FORMULAS: u32 = 1_000_000;
-
 /// Why an operation has no value.
 #[derive(Debug, PartialEq)]
 pub(super) enum Fault {
     /// Its value is `undef`, which deserves a warning.
     Undefined(String),
-    /// The script has to stop: it is wrong.
-    Wrong(String),
-    /// The script has to stop: it takes too much.
+    /// The script has to stop.
     Limit(String),
 }
 
@@ -44,8 +39,6 @@ pub(super) struct Budget {
     calls: u32,
     most_calls: u32,
     levels: u32,
-    /// Operations that formulas may still have.
-    formulas_left: u32,
     /// Bytes alive when evaluation began.
     base: usize,
     most_bytes: u64,
@@ -59,7 +52,6 @@ impl Budget {
             calls: 0,
             most_calls: options.max_depth,
             levels: 0,
-            formulas_left: MOST_FORMULAS,
             base: heap::alive(),
             most_bytes: options.max_bytes,
         }
@@ -87,17 +79,6 @@ impl Budget {
             )));
         }
         Ok(())
-    }
-
-    /// Takes an operation of a formula.
-    pub(super) fn trace(&mut self) -> Result<(), Fault> {
-        match self.formulas_left.checked_sub(1) {
-            Some(left) => {
-                self.formulas_left = left;
-                Ok(())
-            }
-            None => Err(Fault::Limit(format!("formulas have more than {MOST_FORMULAS} operations"))),
-        }
     }
 
     /// Enters a call that is not a tail call; [`Budget::leave_call`] is its counterpart.

@@ -51,7 +51,12 @@ fn reach(recipe: &Csg, map: Affine3, measure: &dyn Fn(Vec2) -> f64) -> f64 {
             children.iter().map(|child| inner(child)).reduce(f64::min).unwrap_or(0.0)
         }
         Csg::Combine { children, .. } => largest(children),
-        Csg::Nothing | Csg::Body(_) | Csg::LinearExtrude { .. } | Csg::RotateExtrude { .. } => 0.0,
+        Csg::Nothing
+        | Csg::Body(_)
+        | Csg::LinearExtrude { .. }
+        | Csg::RotateExtrude { .. }
+        | Csg::Blend { .. }
+        | Csg::Offset { .. } => 0.0,
     }
 }
 

@@ -60,6 +60,12 @@ impl Fragmentation {
         if self.tolerance().is_some() { share.ceil().max(1.0) } else { share.trunc().max(1.0) }
     }
 
+    /// The largest distance of a circle of this radius from its fragments, not 0: `$fe` itself where it decides.
+    pub(super) fn chord_error(&self, radius: f64) -> f64 {
+        let of_chord = || (radius * (1.0 - math::cos(PI / self.of_circle(radius)))).max(f64::MIN_POSITIVE);
+        self.tolerance().unwrap_or_else(of_chord)
+    }
+
     /// Number of layers of a straight sweep of `height` that twists by `degrees`, of an outline that reaches `radius`
     /// far out and has no edge longer than `edge`: as many as its outermost edge has fragments, at least one for 120
     /// degrees.

@@ -1,211 +1,210 @@
-//! Formulas: what functions of the script come to when they are called with symbols instead of numbers.
+//! Numbers that are not known yet: what a function does with them is written down as a formula.
+//!
+//! `implicit(function(p) ...)` calls its function once, with symbols for coordinates. Arithmetic, the functions of
+//! numbers, comparisons and `?:` on symbols make formulas; whatever would have to know the number cannot be traced, and
+//! is an error where it stands.
 
-use super::ast::BinaryOp;
-use super::budget::{Fault, Outcome, undefined};
+use super::ast::{BinaryOp, UnaryOp};
+use super::budget::{Budget, Fault, Outcome, undefined};
+use super::heap;
 use super::value::{List, Value};
-use crate::sdf::{Binary, Expr};
-use std::f64::consts::{LN_10, PI};
+use crate::sdf::{Binary, Expr, Unary};
+use std::f64::consts::PI;
 
-/// Why a formula decides nothing.
-pub(super) const UNDECIDED: &str = "this depends on the parameters of the surface, which have no value here; min, max, abs and sign do instead of conditions";
+/// Bytes an operation of a formula takes, roughly. Formulas share what they are made of: they are counted, and never
+/// given back.
+const NODE: usize = 160;
+
+/// A formula as a value; a number where it is known after all.
+pub(super) fn value(expr: Expr) -> Value {
+    match expr.as_constant() {
+        Some(x) => Value::Number(x),
+        None => {
+            heap::took(NODE);
+            Value::Formula(expr)
+        }
+    }
+}
 
 /// A number or a formula as a formula.
-pub(super) fn of(value: &Value) -> Option<Expr> {
+pub(super) fn expr(value: &Value) -> Option<Expr> {
     match value {
         Value::Number(x) => Some(Expr::constant(*x)),
+        Value::Bool(holds) => Some(Expr::constant(f64::from(u8::from(*holds)))),
         Value::Formula(expr) => Some(expr.clone()),
         _ => None,
     }
 }
 
-/// Both sides as formulas, where at least one is.
-fn both(a: &Value, b: &Value) -> Option<(Expr, Expr)> {
-    let has_formula = matches!(a, Value::Formula(_)) || matches!(b, Value::Formula(_));
-    if has_formula { Some((of(a)?, of(b)?)) } else { None }
+/// Whether a formula is part of a value: a number, a vector or a matrix.
+pub(super) fn is_in(value: &Value) -> bool {
+    match value {
+        Value::Formula(_) => true,
+        Value::List(list) => is_in_list(list),
+        _ => false,
+    }
 }
 
-/// The formula of `a op b`; `None` where neither side is one, or one side is something else.
-pub(super) fn binary(op: BinaryOp, a: &Value, b: &Value) -> Option<Value> {
-    let (a, b) = both(a, b)?;
-    let expr = match op {
-        BinaryOp::Add => a + b,
-        BinaryOp::Subtract => a - b,
-        BinaryOp::Multiply => a * b,
-        BinaryOp::Divide => a / b,
-        BinaryOp::Power => a.pow(b),
-        // The remainder has the sign of the left side.
-        BinaryOp::Modulo => a.compare(0.0) * a.abs().modulo(b.abs()),
-        _ => return None,
-    };
-    Some(Value::Formula(expr))
-}
-
-/// Whether equality with another value cannot be decided.
-pub(super) fn undecided(a: &Value, b: &Value) -> Result<(), Fault> {
-    if both(a, b).is_some() { Err(Fault::Wrong(UNDECIDED.to_owned())) } else { Ok(()) }
-}
-
-/// Whether a list of lists, or of numbers, holds a formula.
-pub(super) fn is_in(list: &List) -> bool {
+/// Whether a formula is part of a vector or a matrix.
+pub(super) fn is_in_list(list: &List) -> bool {
+    let in_row = |row: &List| row.iter().any(|value| matches!(value, Value::Formula(_)));
     list.numbers().is_none()
         && list.iter().any(|value| match &value {
             Value::Formula(_) => true,
-            Value::List(inner) => {
-                inner.numbers().is_none() && inner.iter().any(|v| matches!(v, Value::Formula(_)))
-            }
+            Value::List(row) => row.numbers().is_none() && in_row(row),
             _ => false,
         })
 }
 
-/// The product of vectors and matrices among whose elements are formulas.
-pub(super) fn product(a: &List, b: &List) -> Outcome {
-    match (rows(a), rows(b)) {
-        (None, None) => dot(a, b),
-        (Some(rows), None) => rows.iter().map(|row| dot(row, b)).collect(),
-        (None, Some(rows)) => combination(a, &rows),
-        (Some(left), Some(right)) => left.iter().map(|row| combination(row, &right)).collect(),
+/// `op` of a formula.
+pub(super) fn unary(op: UnaryOp, a: &Expr) -> Outcome {
+    match op {
+        UnaryOp::Plus => Ok(value(a.clone())),
+        UnaryOp::Minus => Ok(value(-a)),
+        UnaryOp::Not => Ok(value(a.not())),
+        UnaryOp::BitNot => undefined("the bits of a coordinate are not known"),
     }
 }
 
-/// The rows of a matrix; `None` for a vector.
-fn rows(list: &List) -> Option<Vec<List>> {
-    list.iter().map(|value| value.list().cloned()).collect()
+/// `a op b` where either is a formula and both are numbers; conditions are 0 where they do not hold.
+pub(super) fn binary(op: BinaryOp, a: &Expr, b: &Expr) -> Outcome {
+    let order = || a.compare(b);
+    Ok(value(match op {
+        BinaryOp::Add => a + b,
+        BinaryOp::Subtract => a - b,
+        BinaryOp::Multiply => a * b,
+        BinaryOp::Divide => a / b,
+        // The remainder has the sign of a.
+        BinaryOp::Modulo => a.compare(0.0) * a.abs().modulo(b.abs()),
+        BinaryOp::Power => a.pow(b),
+        BinaryOp::Less => order().min(0.0),
+        BinaryOp::Greater => order().max(0.0),
+        BinaryOp::LessEqual => order().max(0.0).not(),
+        BinaryOp::GreaterEqual => order().min(0.0).not(),
+        BinaryOp::Equal => order().not(),
+        BinaryOp::NotEqual => order(),
+        BinaryOp::And => a.and(b),
+        BinaryOp::Or => a.or(b),
+        BinaryOp::BitOr | BinaryOp::BitAnd | BinaryOp::ShiftLeft | BinaryOp::ShiftRight => {
+            return undefined("the bits of a coordinate are not known");
+        }
+    }))
 }
 
-fn elements(list: &List) -> Result<Vec<Expr>, Fault> {
-    let all: Option<Vec<Expr>> = list.iter().map(|value| of(&value)).collect();
-    all.map_or_else(|| undefined("a product of lists needs numbers"), Ok)
+/// `condition ? then : otherwise`: both are computed, and each place has its own.
+pub(super) fn select(condition: &Expr, then: &Value, otherwise: &Value, budget: &mut Budget) -> Outcome {
+    if let (Some(then), Some(otherwise)) = (expr(then), expr(otherwise)) {
+        let chosen = condition.and(then).or(condition.not().and(otherwise));
+        return Ok(value(chosen));
+    }
+    match (then, otherwise) {
+        (Value::List(a), Value::List(b)) if a.len() == b.len() => budget.deeper(|budget| {
+            a.iter().zip(b.iter()).map(|(a, b)| select(condition, &a, &b, budget)).collect()
+        }),
+        _ => undefined(format!("{} or {}, by a coordinate", then.kind(), otherwise.kind())),
+    }
 }
 
-fn dot(a: &List, b: &List) -> Outcome {
-    let (a, b) = (elements(a)?, elements(b)?);
+/// The product of vectors and matrices whose elements are numbers and formulas.
+pub(super) fn product(a: &List, b: &List, budget: &mut Budget) -> Outcome {
+    let is_matrix = |list: &List| matches!(list.get(0), Some(Value::List(_)));
+    let rows = |list: &List| -> Result<Vec<Vec<Expr>>, Fault> {
+        list.iter().map(|row| scalars(row.list().ok_or_else(not_a_matrix)?)).collect()
+    };
+    budget.spend((a.len() as u64).saturating_mul(b.len() as u64))?;
+    match (is_matrix(a), is_matrix(b)) {
+        (false, false) => dot(&scalars(a)?, &scalars(b)?),
+        (true, false) => {
+            let vector = scalars(b)?;
+            rows(a)?.iter().map(|row| dot(row, &vector)).collect()
+        }
+        (false, true) => combination(&scalars(a)?, &rows(b)?),
+        (true, true) => {
+            let right = rows(b)?;
+            rows(a)?.iter().map(|row| combination(row, &right)).collect()
+        }
+    }
+}
+
+fn not_a_matrix() -> Fault {
+    Fault::Undefined("a product of lists takes vectors and matrices".to_owned())
+}
+
+fn scalars(list: &List) -> Result<Vec<Expr>, Fault> {
+    list.iter().map(|value| expr(&value).ok_or_else(not_a_matrix)).collect()
+}
+
+fn dot(a: &[Expr], b: &[Expr]) -> Outcome {
     if a.len() != b.len() {
         return undefined(format!("a product of lists of lengths {} and {} is undefined", a.len(), b.len()));
     }
-    let terms = a.iter().zip(&b).map(|(a, b)| a * b);
-    Ok(Value::Formula(terms.reduce(|sum, term| sum + term).unwrap_or_else(|| Expr::constant(0.0))))
+    // Matrices that turn and mirror are mostly zeros, which must not make NaN of infinity.
+    let is_zero = |x: &Expr| x.as_constant() == Some(0.0);
+    let pairs = a.iter().zip(b).filter(|(a, b)| !is_zero(a) && !is_zero(b));
+    let terms = pairs.map(|(a, b)| a * b);
+    Ok(value(terms.reduce(|sum, term| sum + term).unwrap_or(Expr::constant(0.0))))
 }
 
-/// The sum of rows, each times its weight.
-fn combination(weights: &List, rows: &[List]) -> Outcome {
-    let width = rows.first().map_or(0, List::len);
-    if weights.len() != rows.len() || rows.iter().any(|row| row.len() != width) {
-        return undefined(format!(
-            "{} numbers times a matrix of {} rows is undefined",
-            weights.len(),
-            rows.len()
-        ));
+/// Sum of the rows, each times its weight.
+fn combination(weights: &[Expr], rows: &[Vec<Expr>]) -> Outcome {
+    let width = rows.first().map_or(0, Vec::len);
+    if rows.iter().any(|row| row.len() != width) {
+        return Err(not_a_matrix());
     }
-    let column = |k: usize| rows.iter().filter_map(|row| row.get(k)).collect::<Value>();
-    let columns = (0..width).map(|k| match column(k) {
-        Value::List(column) => dot(weights, &column),
-        _ => Ok(Value::Undef),
-    });
-    columns.collect()
+    let column = |index: usize| rows.iter().map(|row| row[index].clone()).collect::<Vec<_>>();
+    (0..width).map(|index| dot(weights, &column(index))).collect()
 }
 
-/// The largest or smallest of some numbers and formulas; `None` where there is no formula, or something else.
-pub(super) fn extreme(op: Binary, values: &[Value]) -> Option<Value> {
-    if !values.iter().any(|value| matches!(value, Value::Formula(_))) {
-        return None;
-    }
-    let all: Option<Vec<Expr>> = values.iter().map(of).collect();
-    all?.into_iter().reduce(|a, b| Expr::binary(op, &a, &b)).map(Value::Formula)
+/// A built-in function of numbers, some of them formulas; `None` where it cannot be traced.
+pub(super) fn call(name: &str, arguments: &[Value]) -> Option<Value> {
+    let scalars = || arguments.iter().map(expr).collect::<Option<Vec<Expr>>>();
+    let traced = match (name, &scalars()) {
+        ("max" | "min", _) => extreme(name == "max", arguments)?,
+        ("norm", None) => norm(arguments)?,
+        ("cross", None) => return cross(arguments),
+        ("is_num", Some(_)) => return Some(Value::Bool(true)),
+        ("abs" | "floor" | "round" | "ceil" | "ln" | "exp" | "sqrt", Some(one)) if one.len() == 1 => {
+            Expr::unary(Unary::from_name(name)?, &one[0])
+        }
+        ("sign", Some(one)) if one.len() == 1 => one[0].compare(0.0),
+        ("log", Some(one)) if one.len() == 1 => one[0].ln() * std::f64::consts::LOG10_E,
+        ("sin" | "cos" | "tan", Some(one)) if one.len() == 1 => {
+            Expr::unary(Unary::from_name(name)?, &(&one[0] * (PI / 180.0)))
+        }
+        ("asin" | "acos" | "atan", Some(one)) if one.len() == 1 => {
+            Expr::unary(Unary::from_name(name)?, &one[0]) * (180.0 / PI)
+        }
+        ("atan2", Some(two)) if two.len() == 2 => {
+            Expr::binary(Binary::Atan2, &two[0], &two[1]) * (180.0 / PI)
+        }
+        ("pow", Some(two)) if two.len() == 2 => two[0].pow(&two[1]),
+        _ => return None,
+    };
+    Some(value(traced))
 }
 
-/// The length of a vector; `None` where something in it is neither number nor formula.
-pub(super) fn norm(list: &List) -> Option<Value> {
-    let all: Vec<Expr> = list.iter().map(|value| of(&value)).collect::<Option<_>>()?;
-    let sum = all.iter().map(Expr::square).reduce(|sum, square| sum + square)?;
-    Some(Value::Formula(sum.sqrt()))
+fn extreme(largest: bool, arguments: &[Value]) -> Option<Expr> {
+    let values = match arguments {
+        [Value::List(list)] => list.iter().map(|value| expr(&value)).collect::<Option<Vec<Expr>>>()?,
+        _ => arguments.iter().map(expr).collect::<Option<Vec<Expr>>>()?,
+    };
+    values.into_iter().reduce(|a, b| if largest { a.max(b) } else { a.min(b) })
 }
 
-/// The cross product of two vectors in space or in the plane; `None` where there is none.
-pub(super) fn cross(a: &List, b: &List) -> Option<Value> {
-    let [a, b] = [a, b].map(|list| list.iter().map(|value| of(&value)).collect::<Option<Vec<Expr>>>());
-    let (a, b) = (a?, b?);
-    let minor = |i: usize, j: usize| Value::Formula(&a[i] * &b[j] - &a[j] * &b[i]);
+fn norm(arguments: &[Value]) -> Option<Expr> {
+    let [Value::List(list)] = arguments else { return None };
+    let squares = list.iter().map(|value| Some(expr(&value)?.square())).collect::<Option<Vec<Expr>>>()?;
+    let sum = squares.into_iter().reduce(|sum, square| sum + square)?;
+    Some(sum.sqrt())
+}
+
+fn cross(arguments: &[Value]) -> Option<Value> {
+    let [Value::List(a), Value::List(b)] = arguments else { return None };
+    let (a, b) = (scalars(a).ok()?, scalars(b).ok()?);
+    let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
     match (a.len(), b.len()) {
-        (2, 2) => Some(minor(0, 1)),
-        (3, 3) => Some([minor(1, 2), minor(2, 0), minor(0, 1)].into_iter().collect()),
+        (2, 2) => Some(value(minor(0, 1))),
+        (3, 3) => Some([minor(1, 2), minor(2, 0), minor(0, 1)].into_iter().map(value).collect()),
         _ => None,
-    }
-}
-
-fn radians(degrees: &Expr) -> Expr {
-    degrees * (PI / 180.0)
-}
-
-fn degrees(radians: &Expr) -> Expr {
-    radians * (180.0 / PI)
-}
-
-pub(super) fn sign(x: &Expr) -> Expr {
-    x.compare(0.0)
-}
-
-pub(super) fn sin(x: &Expr) -> Expr {
-    radians(x).sin()
-}
-
-pub(super) fn cos(x: &Expr) -> Expr {
-    radians(x).cos()
-}
-
-pub(super) fn tan(x: &Expr) -> Expr {
-    radians(x).tan()
-}
-
-pub(super) fn asin(x: &Expr) -> Expr {
-    degrees(&x.asin())
-}
-
-pub(super) fn acos(x: &Expr) -> Expr {
-    degrees(&x.acos())
-}
-
-pub(super) fn atan(x: &Expr) -> Expr {
-    degrees(&x.atan())
-}
-
-pub(super) fn atan2(y: &Expr, x: &Expr) -> Expr {
-    degrees(&y.atan2(x))
-}
-
-pub(super) fn log10(x: &Expr) -> Expr {
-    x.ln() / LN_10
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::{self, Vec3};
-    use crate::script::degrees as exact;
-
-    #[test]
-    fn formulas_have_the_values_of_the_functions() {
-        type Pair = (fn(&Expr) -> Expr, fn(f64) -> f64);
-        let pairs: [Pair; 7] = [
-            (sin, exact::sin),
-            (cos, exact::cos),
-            (tan, exact::tan),
-            (asin, exact::asin),
-            (acos, exact::acos),
-            (atan, exact::atan),
-            (log10, math::log10),
-        ];
-        for (index, (symbolic, numeric)) in pairs.into_iter().enumerate() {
-            for k in 1..20 {
-                let x = f64::from(k) / 20.0 * if (3..5).contains(&index) { 1.0 } else { 80.0 };
-                let mine = symbolic(&Expr::x()).eval(Vec3::new(x, 0.0, 0.0));
-                assert!((mine - numeric(x)).abs() <= 1e-13 * (1.0 + numeric(x).abs()), "{index} {x}");
-            }
-        }
-        let quotients = [(7.5, 2.0), (-7.5, 2.0), (7.5, -2.0), (-7.5, -2.0), (0.0, 3.0)];
-        for (a, b) in quotients {
-            let rest = binary(BinaryOp::Modulo, &Value::Formula(Expr::x()), &Value::Number(b));
-            let Some(Value::Formula(rest)) = rest else { panic!("a formula") };
-            assert_eq!(rest.eval(Vec3::new(a, 0.0, 0.0)), a % b, "{a} {b}");
-        }
     }
 }

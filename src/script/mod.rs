@@ -122,6 +122,8 @@ pub struct Options {
     pub define: Vec<String>,
     /// Value of `$t`.
     pub time: f64,
+    /// First value of `$fe`, the largest distance of fragments from what they stand for; 0 leaves it to `$fa` and `$fs`.
+    pub tolerance: f64,
     /// Most steps (statements, calls, elements of lists) before evaluation stops with [`Failure::Limit`].
     pub max_steps: u64,
     /// Deepest nesting of calls that are not tail calls.
@@ -135,6 +137,7 @@ impl Default for Options {
         Options {
             define: Vec::new(),
             time: 0.0,
+            tolerance: 0.0,
             max_steps: 200_000_000,
             max_depth: 20_000,
             max_bytes: 2 << 30,

@@ -10,14 +10,10 @@ use std::cmp::Ordering;
 /// The value of `op operand`.
 pub(super) fn unary(op: UnaryOp, operand: &Value, budget: &mut Budget) -> Outcome {
     match (op, operand) {
+        (op, Value::Formula(expr)) => formula::unary(op, expr),
         (UnaryOp::Plus, value) => Ok(value.clone()),
-        (UnaryOp::Not, Value::Formula(_)) => Err(Fault::Wrong(formula::UNDECIDED.to_owned())),
         (UnaryOp::Not, value) => Ok(Value::Bool(!value.is_true())),
         (UnaryOp::Minus, Value::Number(value)) => Ok(Value::Number(-value)),
-        (UnaryOp::Minus, Value::Formula(expr)) => {
-            budget.trace()?;
-            Ok(Value::Formula(-expr))
-        }
         (UnaryOp::Minus, Value::List(list)) => each(list, budget, |value, budget| unary(op, value, budget)),
         (UnaryOp::BitNot, Value::Number(value)) => Ok(Value::Number(!(*value as i64) as f64)),
         (UnaryOp::Minus | UnaryOp::BitNot, value) => {
@@ -29,6 +25,9 @@ pub(super) fn unary(op: UnaryOp, operand: &Value, budget: &mut Budget) -> Outcom
 /// The value of `a op b`; `&&` and `||` are decided by their left side before they come here.
 pub(super) fn binary(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
     use BinaryOp as Op;
+    if let Some(outcome) = traced(op, a, b) {
+        return outcome;
+    }
     match op {
         Op::Or => Ok(Value::Bool(a.is_true() || b.is_true())),
         Op::And => Ok(Value::Bool(a.is_true() && b.is_true())),
@@ -39,7 +38,6 @@ pub(super) fn binary(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) ->
         Op::Multiply => product(a, b, budget),
         Op::Divide => quotient(a, b, budget),
         Op::Modulo | Op::Power => match (a, b) {
-            (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(op, a, b, budget),
             (Value::Number(a), Value::Number(b)) if op == Op::Modulo => Ok(Value::Number(a % b)),
             (Value::Number(a), Value::Number(b)) => Ok(Value::Number(math::pow(*a, *b))),
             _ => mismatch(op, a, b),
@@ -48,10 +46,20 @@ pub(super) fn binary(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) ->
     }
 }
 
-/// The formula of `a op b`, one of which is a formula.
-fn traced(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
-    budget.trace()?;
-    formula::binary(op, a, b).map_or_else(|| mismatch(op, a, b), Ok)
+/// What there is to say of an operation where a formula is one of the operands; `None` for a formula and a list, and
+/// where there is no formula.
+fn traced(op: BinaryOp, a: &Value, b: &Value) -> Option<Outcome> {
+    if !matches!((a, b), (Value::Formula(_), _) | (_, Value::Formula(_))) {
+        return None;
+    }
+    match (formula::expr(a), formula::expr(b)) {
+        (Some(a), Some(b)) => Some(formula::binary(op, &a, &b)),
+        _ if matches!((a, b), (Value::List(_), _) | (_, Value::List(_))) => {
+            let elementwise = matches!(op, BinaryOp::Multiply | BinaryOp::Divide);
+            (!elementwise).then(|| mismatch(op, a, b))
+        }
+        _ => Some(mismatch(op, a, b)),
+    }
 }
 
 fn mismatch<T>(op: BinaryOp, a: &Value, b: &Value) -> Result<T, Fault> {
@@ -74,7 +82,6 @@ fn defined(outcome: Outcome) -> Outcome {
 
 /// Whether two values are the same; values of different types never are.
 pub(super) fn equal(a: &Value, b: &Value, budget: &mut Budget) -> Result<bool, Fault> {
-    formula::undecided(a, b)?;
     Ok(match (a, b) {
         (Value::Undef, Value::Undef) => true,
         (Value::Bool(a), Value::Bool(b)) => a == b,
@@ -82,6 +89,9 @@ pub(super) fn equal(a: &Value, b: &Value, budget: &mut Budget) -> Result<bool, F
         (Value::Text(a), Value::Text(b)) => a.as_str() == b.as_str(),
         (Value::Range(a), Value::Range(b)) => a == b,
         (Value::Function(a), Value::Function(b)) => std::rc::Rc::ptr_eq(a, b),
+        (Value::Formula(_), _) | (_, Value::Formula(_)) => {
+            return undefined("whether coordinates are equal is not known");
+        }
         (Value::List(a), Value::List(b)) if a.len() == b.len() => {
             budget.spend(a.len() as u64)?;
             match (a.numbers(), b.numbers()) {
@@ -122,7 +132,6 @@ fn holds(op: BinaryOp, order: Option<Ordering>) -> bool {
 /// How two values compare: `None` for types that do not, `Some(None)` where a NaN is in the way. Lists compare by
 /// the first elements that differ.
 fn order(a: &Value, b: &Value, budget: &mut Budget) -> Result<Option<Option<Ordering>>, Fault> {
-    formula::undecided(a, b)?;
     Ok(match (a, b) {
         (Value::Number(a), Value::Number(b)) => Some(a.partial_cmp(b)),
         (Value::Bool(a), Value::Bool(b)) => Some(Some(a.cmp(b))),
@@ -148,6 +157,9 @@ fn order(a: &Value, b: &Value, budget: &mut Budget) -> Result<Option<Option<Orde
 
 /// Sums and differences of numbers, and of lists element by element up to the end of the shorter.
 fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
+    if let Some(outcome) = traced(op, a, b) {
+        return outcome;
+    }
     let of_numbers = |a: f64, b: f64| if op == BinaryOp::Add { a + b } else { a - b };
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(of_numbers(*a, *b))),
@@ -160,12 +172,14 @@ fn sum(op: BinaryOp, a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
                 a.iter().zip(b.iter()).map(|(a, b)| defined(sum(op, &a, &b, budget))).collect()
             })
         }
-        (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(op, a, b, budget),
         _ => mismatch(op, a, b),
     }
 }
 
 fn product(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
+    if let Some(outcome) = traced(BinaryOp::Multiply, a, b) {
+        return outcome;
+    }
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a * b)),
         (Value::Number(_) | Value::Formula(_), Value::List(list)) => {
@@ -175,7 +189,6 @@ fn product(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
             each(list, budget, |value, budget| product(value, b, budget))
         }
         (Value::List(a), Value::List(b)) => product_of_lists(a, b, budget),
-        (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(BinaryOp::Multiply, a, b, budget),
         _ => mismatch(BinaryOp::Multiply, a, b),
     }
 }
@@ -185,9 +198,8 @@ fn product_of_lists(a: &List, b: &List, budget: &mut Budget) -> Outcome {
         return undefined("a product with an empty list is undefined");
     }
     budget.spend(a.len() as u64 + b.len() as u64)?;
-    if formula::is_in(a) || formula::is_in(b) {
-        budget.trace()?;
-        return formula::product(a, b);
+    if formula::is_in_list(a) || formula::is_in_list(b) {
+        return formula::product(a, b, budget);
     }
     match (a.numbers(), b.numbers()) {
         (Some(a), Some(b)) => dot(a, b),
@@ -247,6 +259,9 @@ fn combination(weights: &[f64], rows: &[List]) -> Outcome {
 }
 
 fn quotient(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
+    if let Some(outcome) = traced(BinaryOp::Divide, a, b) {
+        return outcome;
+    }
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(a / b)),
         (Value::List(list), Value::Number(_) | Value::Formula(_)) => {
@@ -255,7 +270,6 @@ fn quotient(a: &Value, b: &Value, budget: &mut Budget) -> Outcome {
         (Value::Number(_) | Value::Formula(_), Value::List(list)) => {
             each(list, budget, |value, budget| quotient(a, value, budget))
         }
-        (Value::Formula(_), _) | (_, Value::Formula(_)) => traced(BinaryOp::Divide, a, b, budget),
         _ => mismatch(BinaryOp::Divide, a, b),
     }
 }

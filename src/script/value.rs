@@ -17,7 +17,7 @@ pub(super) enum Value {
     List(List),
     Range(Rc<Range>),
     Function(Rc<Closure>),
-    /// A number that depends on symbols, while a function is called with them.
+    /// A number that depends on coordinates, while a function is traced.
     Formula(Expr),
 }
 

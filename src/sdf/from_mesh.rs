@@ -166,6 +166,56 @@ fn nearest_of([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
     a + ab * (on_ac / sum) + ac * (on_ab / sum)
 }
 
+impl MeshField {
+    /// The triangles that may be nearest to a point of the cell, `MOST_NORMALS` + 1 at most.
+    fn candidates(&self, cell: Aabb) -> Vec<u32> {
+        let (middle, reach) = (cell.center(), 0.5 * cell.size().length());
+        // Whatever is nearest to a point of the cell is this near to its middle.
+        let limit = (self.nearest(middle).1.distance(middle) + 2.0 * reach) * (1.0 + 16.0 * f64::EPSILON)
+            + f64::MIN_POSITIVE;
+        let mut near = Vec::new();
+        let around = Aabb { min: middle - limit, max: middle + limit };
+        self.bvh.touching(&self.boxes, around, |item| {
+            let distance = || nearest_of(self.corners[item as usize], middle).distance(middle);
+            if near.len() <= MOST_NORMALS && distance() <= limit {
+                near.push(item);
+            }
+        });
+        near
+    }
+
+    /// Bounds of the second derivatives where the nearest triangles bulge towards the cell, `None` where they may not.
+    ///
+    /// All triangles around a nearest point are among the candidates. Where each of them lies behind the planes of all
+    /// others, the nearest point is that of the convex set behind those planes, the distance from which is convex and no
+    /// more curved than a sphere around the nearest point: its second derivatives have eigenvalues from 0 to 1 over
+    /// the distance, elements beside the diagonal at most half of that.
+    fn convex_curvature(&self, cell: Aabb, values: Interval) -> Option<[Interval; 6]> {
+        let nearest = values.mignitude();
+        let near = self.candidates(cell);
+        if !(nearest > 0.0 && nearest.is_finite()) || near.len() > MOST_NORMALS {
+            return None;
+        }
+        // Seen from inside, what is behind a plane is in front of it.
+        let sign = if values.hi < 0.0 { -1.0 } else { 1.0 };
+        let size = self.bounds.size().max_element();
+        let behind = |i: u32, j: u32| {
+            let (normal, [origin, ..]) = (self.normals[i as usize], self.corners[i as usize]);
+            let above = |corner: Vec3| sign * normal.dot(corner - origin);
+            // Corners are rounded: planes that bend by less than this are flat.
+            normal != Vec3::ZERO
+                && self.corners[j as usize].iter().all(|&corner| above(corner) <= 1e-12 * size)
+        };
+        if !near.iter().all(|&i| near.iter().all(|&j| i == j || behind(i, j))) {
+            return None;
+        }
+        let most = (1.0 / nearest) * (1.0 + 1e-9);
+        let along = if sign > 0.0 { Interval::new(0.0, most) } else { Interval::new(-most, 0.0) };
+        let across = Interval::new(-0.5 * most, 0.5 * most);
+        Some([along, along, along, across, across, across])
+    }
+}
+
 impl Field for MeshField {
     fn value(&self, point: Vec3) -> f64 {
         if point.is_nan() {
@@ -194,19 +244,8 @@ impl Field for MeshField {
 
     fn slopes(&self, cell: Aabb) -> Option<Slopes> {
         let range = self.range(cell)?;
-        let (middle, reach) = (cell.center(), 0.5 * cell.size().length());
-        // Whatever is nearest to a point of the cell is this near to its middle.
-        let limit = (self.nearest(middle).1.distance(middle) + 2.0 * reach) * (1.0 + 16.0 * f64::EPSILON)
-            + f64::MIN_POSITIVE;
-        let mut near = Vec::new();
-        let around = Aabb { min: middle - limit, max: middle + limit };
-        self.bvh.touching(&self.boxes, around, |item| {
-            let item = item as usize;
-            if near.len() <= MOST_NORMALS && nearest_of(self.corners[item], middle).distance(middle) <= limit
-            {
-                near.push(self.normals[item]);
-            }
-        });
+        let near: Vec<Vec3> =
+            self.candidates(cell).into_iter().map(|item| self.normals[item as usize]).collect();
         let known = !near.is_empty() && near.len() <= MOST_NORMALS && !near.contains(&Vec3::ZERO);
         let gradient = if known { cone(near.into_iter()) } else { [Interval::SIGNED_UNIT; 3] };
         Some(Slopes { range, gradient })
@@ -215,7 +254,11 @@ impl Field for MeshField {
     fn curvature(&self, cell: Aabb) -> Option<Curvature> {
         let slopes = self.slopes(cell)?;
         let flat = slopes.gradient.iter().all(|g| g.width() < 1e-9);
-        let hessian = if flat { [Interval::ZERO; 6] } else { [Interval::ENTIRE; 6] };
+        let hessian = if flat {
+            [Interval::ZERO; 6]
+        } else {
+            self.convex_curvature(cell, slopes.range.interval).unwrap_or([Interval::ENTIRE; 6])
+        };
         Some(Curvature { slopes, hessian })
     }
 

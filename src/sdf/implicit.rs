@@ -54,7 +54,7 @@ impl std::error::Error for BadNumber {}
 
 impl BadNumber {
     /// The value, when `holds` does.
-    pub(super) fn check(
+    pub(crate) fn check(
         name: &'static str,
         must_be: &'static str,
         value: f64,
@@ -63,7 +63,7 @@ impl BadNumber {
         if holds { Ok(value) } else { Err(BadNumber { name, must_be, value }) }
     }
 
-    pub(super) fn positive(name: &'static str, value: f64) -> Result<f64, BadNumber> {
+    pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, BadNumber> {
         BadNumber::check(name, "positive and finite", value, value > 0.0 && value.is_finite())
     }
 
@@ -462,7 +462,7 @@ fn moved_box(bounds: Aabb, map: &Affine3) -> Aabb {
 
 /// The greatest factor by which a map stretches lengths: its singular value, by Jacobi's rotations of the symmetric
 /// product (1846).
-fn greatest_stretch(map: Mat3) -> f64 {
+pub(crate) fn greatest_stretch(map: Mat3) -> f64 {
     let mut s = (map.transpose() * map).to_cols_array_2d();
     // Convergence is quadratic; five sweeps are enough for any matrix of three rows.
     for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(15) {

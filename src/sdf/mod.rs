@@ -26,6 +26,7 @@ mod warp;
 pub use expr::Expr;
 pub use field::{Curvature, Field, Points, Slopes};
 pub use from_mesh::MeshField;
+pub(crate) use implicit::greatest_stretch;
 pub use implicit::{BadNumber, Implicit};
 pub use op::{Binary, Blend, Unary};
 pub use outline::Polygon;

@@ -259,7 +259,7 @@ impl Blend {
         std::f64::consts::SQRT_2 * radius
     }
 
-    pub(super) fn kind(self) -> u64 {
+    pub(crate) fn kind(self) -> u64 {
         match self {
             Blend::Quadratic { .. } => 0,
             Blend::Circular { .. } => 1,

@@ -232,7 +232,7 @@ impl Primitive {
     }
 
     /// Its name and its numbers: what makes it different from others.
-    pub(super) fn parameters(self) -> (u8, Vec<f64>) {
+    pub(crate) fn parameters(self) -> (u8, Vec<f64>) {
         match self {
             Primitive::Sphere { radius } => (0, vec![radius]),
             Primitive::Ellipsoid { radii } => (1, radii.to_array().to_vec()),

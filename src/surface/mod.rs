@@ -244,7 +244,10 @@ impl fmt::Display for SurfaceError {
                 write!(f, "degree {actual} where {most} is the highest")
             }
             SurfaceError::NotPlain { axis } => {
-                write!(f, "coordinate {axis} is not a formula in plain operations")
+                write!(
+                    f,
+                    "coordinate {axis} is not one formula in plain operations: it must not choose between several"
+                )
             }
             SurfaceError::Reversal { parameter } => write!(f, "the path turns back on itself at {parameter}"),
             SurfaceError::AlongRay => f.write_str("the ray runs along the surface"),

@@ -27,10 +27,7 @@ pub(super) const TABLE: &[Builtin] = &[
         test(a, |value| matches!(value, Value::Bool(_)))
     }),
     function_row("is_num", &["value"], "Whether the value is a number, and not NaN.", |_, a| {
-        test(a, |value| match value {
-            Value::Number(x) => !x.is_nan(),
-            value => matches!(value, Value::Formula(_)),
-        })
+        test(a, |value| value.number().is_some_and(|x| !x.is_nan()))
     }),
     function_row("is_string", &["value"], "Whether the value is a string.", |_, a| {
         test(a, |value| matches!(value, Value::Text(_)))

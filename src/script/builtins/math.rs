@@ -5,53 +5,35 @@ use crate::math;
 use crate::script::budget::{Outcome, undefined};
 use crate::script::degrees;
 use crate::script::eval::Session;
-use crate::script::formula;
 use crate::script::value::{List, Value};
-use crate::sdf::{Binary, Expr};
 
 pub(super) const TABLE: &[Builtin] = &[
-    function_row("abs", &["x"], "The number without its sign.", |s, a| of_number(s, a, f64::abs, Expr::abs)),
-    function_row("sign", &["x"], "-1, 0 or 1.", |s, a| of_number(s, a, sign, formula::sign)),
-    function_row("sin", &["degrees"], "Sine of an angle in degrees.", |s, a| {
-        of_number(s, a, degrees::sin, formula::sin)
+    function_row("abs", &["x"], "The number without its sign.", |_, a| of_number(a, f64::abs)),
+    function_row("sign", &["x"], "-1, 0 or 1.", |_, a| of_number(a, sign)),
+    function_row("sin", &["degrees"], "Sine of an angle in degrees.", |_, a| of_number(a, degrees::sin)),
+    function_row("cos", &["degrees"], "Cosine of an angle in degrees.", |_, a| of_number(a, degrees::cos)),
+    function_row("tan", &["degrees"], "Tangent of an angle in degrees.", |_, a| of_number(a, degrees::tan)),
+    function_row("asin", &["x"], "Angle in degrees whose sine is x.", |_, a| of_number(a, degrees::asin)),
+    function_row("acos", &["x"], "Angle in degrees whose cosine is x.", |_, a| of_number(a, degrees::acos)),
+    function_row("atan", &["x"], "Angle in degrees whose tangent is x.", |_, a| of_number(a, degrees::atan)),
+    function_row("atan2", &["y", "x"], "Angle of the vector (x, y) in degrees.", |_, a| {
+        of_two(a, degrees::atan2)
     }),
-    function_row("cos", &["degrees"], "Cosine of an angle in degrees.", |s, a| {
-        of_number(s, a, degrees::cos, formula::cos)
+    function_row("floor", &["x"], "Largest whole number not above x.", |_, a| of_number(a, f64::floor)),
+    function_row("round", &["x"], "Nearest whole number, halves away from 0.", |_, a| {
+        of_number(a, f64::round)
     }),
-    function_row("tan", &["degrees"], "Tangent of an angle in degrees.", |s, a| {
-        of_number(s, a, degrees::tan, formula::tan)
-    }),
-    function_row("asin", &["x"], "Angle in degrees whose sine is x.", |s, a| {
-        of_number(s, a, degrees::asin, formula::asin)
-    }),
-    function_row("acos", &["x"], "Angle in degrees whose cosine is x.", |s, a| {
-        of_number(s, a, degrees::acos, formula::acos)
-    }),
-    function_row("atan", &["x"], "Angle in degrees whose tangent is x.", |s, a| {
-        of_number(s, a, degrees::atan, formula::atan)
-    }),
-    function_row("atan2", &["y", "x"], "Angle of the vector (x, y) in degrees.", |s, a| {
-        of_two(s, a, degrees::atan2, formula::atan2)
-    }),
-    function_row("floor", &["x"], "Largest whole number not above x.", |s, a| {
-        of_number(s, a, f64::floor, Expr::floor)
-    }),
-    function_row("round", &["x"], "Nearest whole number, halves away from 0.", |s, a| {
-        of_number(s, a, f64::round, Expr::round)
-    }),
-    function_row("ceil", &["x"], "Smallest whole number not below x.", |s, a| {
-        of_number(s, a, f64::ceil, Expr::ceil)
-    }),
-    function_row("ln", &["x"], "Natural logarithm.", |s, a| of_number(s, a, math::ln, Expr::ln)),
-    function_row("log", &["x"], "Logarithm to base 10.", |s, a| of_number(s, a, math::log10, formula::log10)),
-    function_row("exp", &["x"], "e to the power of x.", |s, a| of_number(s, a, math::exp, Expr::exp)),
-    function_row("pow", &["x", "y"], "x to the power of y.", |s, a| of_two(s, a, math::pow, |x, y| x.pow(y))),
-    function_row("sqrt", &["x"], "Square root.", |s, a| of_number(s, a, f64::sqrt, Expr::sqrt)),
+    function_row("ceil", &["x"], "Smallest whole number not below x.", |_, a| of_number(a, f64::ceil)),
+    function_row("ln", &["x"], "Natural logarithm.", |_, a| of_number(a, math::ln)),
+    function_row("log", &["x"], "Logarithm to base 10.", |_, a| of_number(a, math::log10)),
+    function_row("exp", &["x"], "e to the power of x.", |_, a| of_number(a, math::exp)),
+    function_row("pow", &["x", "y"], "x to the power of y.", |_, a| of_two(a, math::pow)),
+    function_row("sqrt", &["x"], "Square root.", |_, a| of_number(a, f64::sqrt)),
     function_row("max", &["values"], "Largest of its arguments, or of one list.", |_, a| {
-        extreme(a, |x, y| x > y, Binary::Max)
+        extreme(a, |x, y| x > y)
     }),
     function_row("min", &["values"], "Smallest of its arguments, or of one list.", |_, a| {
-        extreme(a, |x, y| x < y, Binary::Min)
+        extreme(a, |x, y| x < y)
     }),
     function_row("norm", &["v"], "Length of a vector.", |_, a| norm(a)),
     function_row("cross", &["a", "b"], "Cross product of two vectors in space or in the plane.", |_, a| {
@@ -72,37 +54,17 @@ pub(super) const TABLE: &[Builtin] = &[
 /// What scripts test for: the release whose language is complete here.
 const VERSION: [f64; 3] = [2021.0, 1.0, 0.0];
 
-/// A function of a number, and what it is of a formula.
-fn of_number(
-    session: &mut Session<'_>,
-    arguments: &[Value],
-    numeric: impl Fn(f64) -> f64,
-    symbolic: impl Fn(&Expr) -> Expr,
-) -> Outcome {
+fn of_number(arguments: &[Value], f: impl Fn(f64) -> f64) -> Outcome {
     match arguments {
-        [Value::Number(x)] => Ok(Value::Number(numeric(*x))),
-        [Value::Formula(x)] => {
-            session.budget.trace()?;
-            Ok(Value::Formula(symbolic(x)))
-        }
+        [Value::Number(x)] => Ok(Value::Number(f(*x))),
         [other] => undefined(format!("a number is needed, not {}", other.kind())),
         _ => count(1, arguments),
     }
 }
 
-/// A function of two numbers, and what it is of formulas.
-fn of_two(
-    session: &mut Session<'_>,
-    arguments: &[Value],
-    numeric: impl Fn(f64, f64) -> f64,
-    symbolic: impl Fn(&Expr, &Expr) -> Expr,
-) -> Outcome {
+fn of_two(arguments: &[Value], f: impl Fn(f64, f64) -> f64) -> Outcome {
     match arguments {
-        [Value::Number(a), Value::Number(b)] => Ok(Value::Number(numeric(*a, *b))),
-        [a, b] if let (Some(a), Some(b)) = (formula::of(a), formula::of(b)) => {
-            session.budget.trace()?;
-            Ok(Value::Formula(symbolic(&a, &b)))
-        }
+        [Value::Number(a), Value::Number(b)] => Ok(Value::Number(f(*a, *b))),
         [a, b] => undefined(format!("two numbers are needed, not {} and {}", a.kind(), b.kind())),
         _ => count(2, arguments),
     }
@@ -123,14 +85,11 @@ fn sign(x: f64) -> f64 {
 }
 
 /// The first argument that no later one beats.
-fn extreme(arguments: &[Value], beats: impl Fn(f64, f64) -> bool, symbolic: Binary) -> Outcome {
+fn extreme(arguments: &[Value], beats: impl Fn(f64, f64) -> bool) -> Outcome {
     let values: Vec<Value> = match arguments {
         [Value::List(list)] => list.iter().collect(),
         _ => arguments.to_vec(),
     };
-    if let Some(formula) = formula::extreme(symbolic, &values) {
-        return Ok(formula);
-    }
     let mut best: Option<f64> = None;
     for value in &values {
         let Value::Number(x) = value else {
@@ -147,17 +106,12 @@ fn norm(arguments: &[Value]) -> Outcome {
     let [Value::List(list)] = arguments else { return undefined("one list of numbers is needed") };
     match list.numbers() {
         Some(numbers) => Ok(Value::Number(numbers.iter().map(|x| x * x).sum::<f64>().sqrt())),
-        None => formula::norm(list).map_or_else(|| undefined("a list of numbers is needed"), Ok),
+        None => undefined("a list of numbers is needed"),
     }
 }
 
 fn cross(arguments: &[Value]) -> Outcome {
     let [Value::List(a), Value::List(b)] = arguments else { return undefined("two vectors are needed") };
-    if (formula::is_in(a) || formula::is_in(b))
-        && let Some(formula) = formula::cross(a, b)
-    {
-        return Ok(formula);
-    }
     let finite = |list: &List| list.numbers().is_some_and(|numbers| numbers.iter().all(|x| x.is_finite()));
     if !finite(a) || !finite(b) {
         return undefined("the vectors must hold finite numbers");

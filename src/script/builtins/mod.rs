@@ -4,6 +4,7 @@ mod color;
 mod combine;
 mod curves;
 mod extrude;
+mod fields;
 mod lists;
 mod math;
 mod placement;
@@ -112,6 +113,7 @@ const TABLES: &[&[Builtin]] = &[
     random::TABLE,
     search::TABLE,
     surfaces::TABLE,
+    fields::TABLE,
     VARIABLES,
     MISSING,
 ];

@@ -180,7 +180,7 @@ fn import<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Result<Ma
 }
 
 /// A radius given as such or as a diameter, which wins.
-fn radius<'p>(
+pub(super) fn radius<'p>(
     machine: &mut Machine<'p>,
     call: &Invocation<'_, 'p>,
     radius: &str,

@@ -129,10 +129,9 @@ fn parametric<'p>(machine: &mut Machine<'p>, call: &Invocation<'_, 'p>) -> Resul
             }
         }
     }
-    let symbols = [Expr::x(), Expr::y()].map(Value::Formula).to_vec();
-    let point = machine.call_value(&function, symbols, call.span)?;
+    let point = machine.traced_in_plane(&function, call.span)?;
     let coordinates: Option<Vec<Expr>> =
-        point.list().and_then(|list| list.iter().map(|value| formula::of(&value)).collect());
+        point.list().and_then(|list| list.iter().map(|value| formula::expr(&value)).collect());
     let Some(coordinates) = coordinates.and_then(|list| <[Expr; 3]>::try_from(list).ok()) else {
         let shown = machine.shown_value(&point, call.span)?;
         return refused(machine, call, &format!("the function must give three numbers, not {shown}"));
@@ -221,7 +220,6 @@ fn faulty<'p>(
 ) -> Result<Made, Failure> {
     match fault {
         Fault::Undefined(reason) => refused(machine, call, &format!("{what}: {reason}")),
-        Fault::Wrong(reason) => Err(machine.error(call.span, reason)),
         Fault::Limit(reason) => Err(machine.limit(call.span, reason)),
     }
 }

@@ -10,7 +10,7 @@ use crate::script::builtins::{Action, Builtin, NamedAction};
 use crate::script::diagnostic::Span;
 use crate::script::names::Symbol;
 use crate::script::report::Complaint;
-use crate::script::value::{Closure, Frame, Value};
+use crate::script::value::{Frame, Value};
 use std::rc::Rc;
 
 /// A function found for a call.
@@ -28,11 +28,11 @@ struct Ready {
 }
 
 /// A call with its arguments in place.
-struct Pending {
-    function: FunctionId,
-    frame: Rc<Frame>,
-    unit: UnitId,
-    span: Span,
+pub(super) struct Pending {
+    pub(super) function: FunctionId,
+    pub(super) frame: Rc<Frame>,
+    pub(super) unit: UnitId,
+    pub(super) span: Span,
 }
 
 /// What an expression at the end of a function comes to: its value, or a call that has it.
@@ -88,30 +88,6 @@ impl<'p> Machine<'p> {
                 Found::Nothing
             }
         })
-    }
-
-    /// Calls a function value with these arguments, without names.
-    pub(in crate::script) fn call_value(
-        &mut self,
-        closure: &Closure,
-        arguments: Vec<Value>,
-        span: Span,
-    ) -> Result<Value, Failure> {
-        let function = &self.program[closure.function];
-        let frame = Frame::new(function.frame, Some(closure.frame.clone()));
-        let mark = self.specials.mark();
-        let mut arguments = arguments.into_iter();
-        for parameter in &function.parameters {
-            let value = match (arguments.next(), parameter.default) {
-                (Some(value), _) => value,
-                (None, Some(default)) => self.eval(default, &closure.frame)?,
-                (None, None) => Value::Undef,
-            };
-            self.set(parameter.slot, parameter.name, value, &frame);
-        }
-        let value = self.run(Pending { function: closure.function, frame, unit: self.unit, span })?;
-        self.specials.restore(mark);
-        Ok(value)
     }
 
     fn found(&self, value: &Value) -> Option<Found> {
@@ -239,7 +215,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Runs a call and all that it ends in.
-    fn run(&mut self, mut pending: Pending) -> Result<Value, Failure> {
+    pub(super) fn run(&mut self, mut pending: Pending) -> Result<Value, Failure> {
         let entered = self.session.budget.enter_call();
         self.allow(entered, pending.span)?;
         let outer = self.unit;
@@ -266,7 +242,13 @@ impl<'p> Machine<'p> {
         loop {
             match &program[id] {
                 Expr::Conditional { condition, then, otherwise } => {
-                    id = if self.holds(*condition, &frame)? { *then } else { *otherwise };
+                    id = match self.eval(*condition, &frame)? {
+                        Value::Formula(condition) => {
+                            return self.either(&condition, *then, *otherwise, id, &frame).map(Tail::Value);
+                        }
+                        condition if condition.is_true() => *then,
+                        _ => *otherwise,
+                    };
                 }
                 Expr::Let(inner) if inner.bindings.iter().all(|b| matches!(b.slot, Slot::Local(_))) => {
                     if let Room::Own(_) = inner.room {
@@ -338,11 +320,18 @@ impl<'p> Machine<'p> {
         let outcome = match builtin.action {
             Action::Function(action) => {
                 let spent = self.session.budget.spend(1);
-                spent.and_then(|()| action(&mut self.session, &self.stack[base..]))
+                spent.and_then(|()| match self.traced_call(builtin.name, base) {
+                    Some(value) => Ok(value),
+                    None => action(&mut self.session, &self.stack[base..]),
+                })
             }
             Action::Missing => return Err(self.missing(span, builtin.name)),
             Action::Module(_) | Action::NamedFunction(_) | Action::Nothing => Ok(Value::Undef),
         };
+        if self.tracing && outcome.is_err() {
+            let arguments = self.stack.split_off(base);
+            self.refuse_untraced(&outcome, &arguments, builtin.name, span)?;
+        }
         self.stack.truncate(base);
         self.settle_builtin(builtin, outcome, span)
     }
@@ -385,6 +374,7 @@ impl<'p> Machine<'p> {
         let spent = self.session.budget.spend(1);
         let outcome = spent.and_then(|()| action(&mut self.session, &values, fragmentation));
         self.specials.restore(mark);
+        self.refuse_untraced(&outcome, &values, builtin.name, span)?;
         self.settle_builtin(builtin, outcome, span)
     }
 

@@ -30,7 +30,7 @@ impl<'p> Machine<'p> {
             }),
             Expr::While(inner) => self.while_elements(inner, id, frame, out),
             Expr::If { condition, then, otherwise } => {
-                if self.holds(*condition, frame)? {
+                if self.decided(*condition, frame)? {
                     self.elements(*then, frame, out)
                 } else {
                     otherwise.map_or(Ok(()), |otherwise| self.elements(otherwise, frame, out))
@@ -67,7 +67,7 @@ impl<'p> Machine<'p> {
         let mark = self.specials.mark();
         let mut frame = room(inner.room, frame);
         self.bind_all(&inner.init, &frame)?;
-        while self.holds(inner.condition, &frame)? {
+        while self.decided(inner.condition, &frame)? {
             self.step(self.program.span(id))?;
             self.elements(inner.body, &frame, out)?;
             frame = self.fresh(inner.room, &frame);

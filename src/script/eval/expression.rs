@@ -2,7 +2,6 @@ use super::{Failure, Machine};
 use crate::script::ast::{Argument, BinaryOp, Binding, Expr, ExprId, Let, Place, Room, Slot};
 use crate::script::diagnostic::{Severity, Span};
 use crate::script::format;
-use crate::script::formula;
 use crate::script::names::Symbol;
 use crate::script::operators;
 use crate::script::report::Complaint;
@@ -52,23 +51,30 @@ impl<'p> Machine<'p> {
             Expr::Unary { op, operand } => {
                 let operand = self.eval(*operand, frame)?;
                 let outcome = operators::unary(*op, &operand, &mut self.session.budget);
-                self.settle(outcome, program.span(id))
+                self.settle_traced(outcome, &[operand], program.span(id))
             }
             Expr::Conditional { condition, then, otherwise } => {
-                let chosen = if self.holds(*condition, frame)? { then } else { otherwise };
+                let chosen = match self.eval(*condition, frame)? {
+                    Value::Formula(condition) => {
+                        return self.either(&condition, *then, *otherwise, id, frame);
+                    }
+                    condition if condition.is_true() => then,
+                    _ => otherwise,
+                };
                 self.eval(*chosen, frame)
             }
             Expr::Call(call) => self.call(call, id, frame),
             Expr::Index { list, index } => {
                 let list = self.eval(*list, frame)?;
                 let index = self.eval(*index, frame)?;
+                self.refuse_formula(&index, "an index", program.span(id))?;
                 Ok(element(&list, &index))
             }
             Expr::Member { object, name } => {
                 let object = self.eval(*object, frame)?;
                 Ok(member(&object, program.names.text(*name)))
             }
-            Expr::Range { begin, step, end } => self.range(*begin, *step, *end, frame),
+            Expr::Range { begin, step, end } => self.range(*begin, *step, *end, id, frame),
             Expr::Let(inner) => self.in_let(inner, frame, |machine, frame| machine.eval(inner.body, frame)),
             Expr::Assert { arguments, body } => {
                 self.assert(arguments, program.span(id), frame)?;
@@ -155,14 +161,6 @@ impl<'p> Machine<'p> {
         })
     }
 
-    /// Whether a condition holds; an error where that depends on symbols.
-    pub(super) fn holds(&mut self, condition: ExprId, frame: &Rc<Frame>) -> Result<bool, Failure> {
-        match self.eval(condition, frame)? {
-            Value::Formula(_) => Err(self.error(self.program.span(condition), formula::UNDECIDED)),
-            value => Ok(value.is_true()),
-        }
-    }
-
     fn binary(
         &mut self,
         op: BinaryOp,
@@ -171,12 +169,13 @@ impl<'p> Machine<'p> {
         id: ExprId,
         frame: &Rc<Frame>,
     ) -> Result<Value, Failure> {
-        if let BinaryOp::And | BinaryOp::Or = op {
-            let decided = self.holds(left, frame)?;
-            let value = if decided == (op == BinaryOp::Or) { decided } else { self.holds(right, frame)? };
-            return Ok(Value::Bool(value));
-        }
         let a = self.eval(left, frame)?;
+        match op {
+            _ if matches!(a, Value::Formula(_)) => {}
+            BinaryOp::And if !a.is_true() => return Ok(Value::Bool(false)),
+            BinaryOp::Or if a.is_true() => return Ok(Value::Bool(true)),
+            _ => {}
+        }
         let b = self.eval(right, frame)?;
         // What loops are made of, without a detour.
         if let (Value::Number(a), Value::Number(b)) = (&a, &b) {
@@ -190,7 +189,7 @@ impl<'p> Machine<'p> {
             }
         }
         let outcome = operators::binary(op, &a, &b, &mut self.session.budget);
-        self.settle(outcome, self.program.span(id))
+        self.settle_traced(outcome, &[a, b], self.program.span(id))
     }
 
     fn range(
@@ -198,11 +197,15 @@ impl<'p> Machine<'p> {
         begin: ExprId,
         step: Option<ExprId>,
         end: ExprId,
+        id: ExprId,
         frame: &Rc<Frame>,
     ) -> Result<Value, Failure> {
         let begin = self.eval(begin, frame)?;
         let step = step.map_or(Ok(Value::Number(1.0)), |step| self.eval(step, frame))?;
         let end = self.eval(end, frame)?;
+        for value in [&begin, &step, &end] {
+            self.refuse_formula(value, "an end of a range", self.program.span(id))?;
+        }
         Ok(match (begin, step, end) {
             (Value::Number(begin), Value::Number(step), Value::Number(end)) => {
                 Value::Range(Rc::new(Range { begin, step, end }))
@@ -278,7 +281,7 @@ impl<'p> Machine<'p> {
             return Err(self.error(span, "assert needs a condition"));
         };
         let message = named("message").or_else(|| unnamed.next());
-        if self.holds(condition.value, frame)? {
+        if self.decided(condition.value, frame)? {
             return Ok(());
         }
         let place = self.program.span(condition.value);

@@ -11,6 +11,7 @@ mod expression;
 mod shape;
 mod special;
 mod statement;
+mod trace;
 
 pub(super) use arguments::Invocation;
 pub(super) use shape::{Made, Shape};
@@ -85,6 +86,8 @@ pub(super) struct Machine<'p> {
     calls: Vec<Running>,
     /// The unit whose code runs.
     unit: UnitId,
+    /// Whether a function runs on symbols.
+    tracing: bool,
     units: Vec<UnitState>,
     /// The subtree marked with `!`.
     root: Option<(Shape, Vec<Shape>)>,
@@ -134,6 +137,7 @@ impl<'p> Machine<'p> {
             stack: Vec::new(),
             calls: Vec::new(),
             unit: UnitId(0),
+            tracing: false,
             units: program.units.iter().map(|_| UnitState::default()).collect(),
             root: None,
             said: HashMap::new(),
@@ -186,7 +190,7 @@ impl<'p> Machine<'p> {
                 self.warn(span, text);
                 Ok(Value::Undef)
             }
-            Err(fault @ (Fault::Limit(_) | Fault::Wrong(_))) => Err(self.stop(fault, span)),
+            Err(fault @ Fault::Limit(_)) => Err(self.stop(fault, span)),
         }
     }
 
@@ -201,7 +205,7 @@ impl<'p> Machine<'p> {
                 self.say(Complaint::error(span, text));
                 Failure::Limit
             }
-            Fault::Undefined(text) | Fault::Wrong(text) => self.error(span, text),
+            Fault::Undefined(text) => self.error(span, text),
         }
     }
 

@@ -80,6 +80,32 @@ impl Machine<'_> {
 
     /// All shapes combined to one.
     pub(in crate::script) fn combined(&mut self, op: Op, made: Made, span: Span) -> Result<Made, Failure> {
+        self.combined_by(op, made, span, |children| Csg::Combine { op, children })
+    }
+
+    /// All solids combined to one by a recipe of this kind; plane shapes are left out with a warning.
+    pub(in crate::script) fn combined_solids(
+        &mut self,
+        op: Op,
+        mut made: Made,
+        span: Span,
+        combine: impl FnOnce(Vec<Arc<Csg>>) -> Csg,
+    ) -> Result<Made, Failure> {
+        let before = made.shapes.len();
+        made.shapes.retain(|shape| shape.dimension != Some(Dimension::Two));
+        if made.shapes.len() < before {
+            self.warn(span, "this works on solids; plane shapes are left out");
+        }
+        self.combined_by(op, made, span, combine)
+    }
+
+    fn combined_by(
+        &mut self,
+        op: Op,
+        made: Made,
+        span: Span,
+        combine: impl FnOnce(Vec<Arc<Csg>>) -> Csg,
+    ) -> Result<Made, Failure> {
         let Made { shapes, shown } = made;
         let mut shapes = self.of_one_dimension(shapes, span);
         let neutral = |index: usize| match op {
@@ -101,7 +127,7 @@ impl Machine<'_> {
         let dimension = shapes.iter().find_map(|shape| shape.dimension);
         let depth = 1 + shapes.iter().map(|shape| shape.depth).max().unwrap_or(0);
         let children = shapes.into_iter().map(|shape| shape.recipe).collect();
-        Ok(Made::one(self.node(Csg::Combine { op, children }, dimension, depth, span)?, shown))
+        Ok(Made::one(self.node(combine(children), dimension, depth, span)?, shown))
     }
 
     /// The hull of all shapes.

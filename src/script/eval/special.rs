@@ -10,6 +10,8 @@ pub(super) struct Specials {
     /// The variables that were set, in order.
     log: Vec<Symbol>,
     known: Known,
+    /// The first value of `$fe`.
+    tolerance: f64,
 }
 
 /// The symbols the evaluator itself asks for; `None` where no script names them.
@@ -39,13 +41,14 @@ impl Specials {
             parent_modules: names.find("$parent_modules"),
             fragments: ["$fn", "$fa", "$fs", "$fe"].map(|name| names.find(name)),
         };
-        let mut specials = Specials { stacks: vec![Vec::new(); names.len()], log: Vec::new(), known };
+        let stacks = vec![Vec::new(); names.len()];
+        let mut specials = Specials { stacks, log: Vec::new(), known, tolerance: options.tolerance };
         let point = |x: f64, y: f64, z: f64| Value::from_numbers(vec![x, y, z]);
         let initial = [
             ("$fn", Value::Number(0.0)),
             ("$fa", Value::Number(12.0)),
             ("$fs", Value::Number(2.0)),
-            ("$fe", Value::Number(0.0)),
+            ("$fe", Value::Number(options.tolerance)),
             ("$t", Value::Number(options.time)),
             ("$vpr", point(55.0, 0.0, 25.0)),
             ("$vpt", point(0.0, 0.0, 0.0)),
@@ -114,7 +117,7 @@ impl Specials {
             count: number(0, 0.0),
             angle: number(1, 12.0),
             size: number(2, 2.0),
-            error: number(3, 0.0),
+            error: number(3, self.tolerance),
         }
     }
 }

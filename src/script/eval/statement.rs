@@ -123,7 +123,7 @@ impl<'p> Machine<'p> {
         let made = match kind {
             StatementKind::Block(block) => self.block(block, context)?,
             StatementKind::If { condition, then, otherwise } => {
-                let chosen = match self.holds(*condition, &context.frame)? {
+                let chosen = match self.eval(*condition, &context.frame)?.is_true() {
                     true => Some(then),
                     false => otherwise.as_ref(),
                 };
