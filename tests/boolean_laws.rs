@@ -26,7 +26,7 @@ fn pairs_obey_the_laws() {
     };
     let (seed, count) = (setting("OGEE_LAWS_SEED", 1), setting("OGEE_LAWS_COUNT", 1000));
     let (mut failed, mut tally) = (Vec::new(), Tally::default());
-    for seed in seed..seed + count {
+    for seed in FAILED_ONCE.into_iter().chain(seed..seed + count) {
         let outcome = catch_unwind(AssertUnwindSafe(|| broken_laws(seed, &mut tally)));
         let broken = outcome.unwrap_or_else(|_| vec!["panicked".to_owned()]);
         if !broken.is_empty() {
@@ -37,6 +37,9 @@ fn pairs_obey_the_laws() {
     println!("{count} pairs from seed {seed}, {} failed; {tally:?}", failed.len());
     assert!(failed.is_empty(), "{} of {count} pairs failed: {failed:?}", failed.len());
 }
+
+/// Pairs that broke a law once, and why: wedges that touch along an edge, paired anew, were not known to touch.
+const FAILED_ONCE: [u64; 1] = [6_007_481];
 
 /// What was seen beside the laws.
 #[derive(Debug, Default)]

@@ -203,6 +203,9 @@ fn touching_wedges_change_partners_when_turned_inside_out() {
         assert_eq!(components(result.mesh()).len(), 2);
         let wedges = boolean::difference(&block, &result).solid;
         assert_eq!(components(wedges.mesh()).len(), 2);
+        // Faces of the cavities run on flat across the edge, where the other two meet: what cuts them there is seen.
+        let cutter = cuboid(Vec3::new(0.5, 0.5, 0.25), Vec3::new(1.5, 1.5, 0.75));
+        assert_eq!(boolean::difference(&result, &cutter).solid.measures().volume, 61.75);
     }
 }
 

@@ -20,6 +20,7 @@ pub(super) fn assemble<'a>(scene: Scene<'a>, carriers: Carriers, regions: &Regio
     let middles = rims.straighten(&scene, &carriers, &faces);
     let touches_itself = touched_inside
         || faces.any_merged_across(regions, &joints, &crowded)
+        || any_flat_across(&scene, &carriers, regions, &joints, &crowded)
         || middles.any_met_by_others(&scene, &carriers, regions);
     let mut surface = Surface { of_rim: vec![NONE; rims.rims.len()], ..Surface::default() };
     surface.add_whole_triangles(&scene, &carriers, regions);
@@ -110,6 +111,26 @@ impl Faces {
             .filter(|&fin| crowded[fin] && joints[fin] != NONE)
             .any(|fin| self.go_on(&regions.fins[fin], &regions.fins[joints[fin] as usize]))
     }
+}
+
+/// Whether an untouched triangle goes on in its plane across an edge that another wedge touches: it did not before, or it
+/// would be touched.
+fn any_flat_across(
+    scene: &Scene<'_>,
+    carriers: &Carriers,
+    regions: &Regions,
+    joints: &[u32],
+    crowded: &[bool],
+) -> bool {
+    let plane = |fin: &Fin| match fin.side {
+        Side::Carrier { carrier, .. } => *carriers.carriers[carrier as usize].chart.plane(),
+        Side::Triangle { half_edge } => scene.plane_through(half_edge / 3),
+    };
+    let is_whole = |fin: &Fin| matches!(fin.side, Side::Triangle { .. });
+    (0..joints.len()).filter(|&fin| crowded[fin] && joints[fin] != NONE).any(|fin| {
+        let (fin, other) = (&regions.fins[fin], &regions.fins[joints[fin] as usize]);
+        is_whole(fin) && plane(fin).same_points(&plane(other))
+    })
 }
 
 /// Joined pairs of fins.
