@@ -108,7 +108,7 @@ impl Body {
         };
         taken_by.resize(world.points().len().max(taken_by.len()), NONE);
         let mut shares = |p: &PointId| std::mem::replace(&mut taken_by[p.0 as usize], index) == index;
-        let may_be_pinched = ids.iter().fold(false, |any, p| shares(p) || any);
+        let may_be_pinched = ids.iter().any(&mut shares);
         let mut body = Body { may_be_pinched, ..Body::default() };
         body.corners.reserve(mesh.triangles.len());
         body.births.reserve(mesh.triangles.len());
