@@ -87,7 +87,7 @@ pub(super) struct Machine<'p> {
     /// The unit whose code runs.
     unit: UnitId,
     /// Whether a function runs on symbols.
-    tracing: bool,
+    tracing: Option<trace::Traced>,
     units: Vec<UnitState>,
     /// The subtree marked with `!`.
     root: Option<(Shape, Vec<Shape>)>,
@@ -137,7 +137,7 @@ impl<'p> Machine<'p> {
             stack: Vec::new(),
             calls: Vec::new(),
             unit: UnitId(0),
-            tracing: false,
+            tracing: None,
             units: program.units.iter().map(|_| UnitState::default()).collect(),
             root: None,
             said: HashMap::new(),
