@@ -358,6 +358,7 @@ fn what_cannot_be_traced_is_an_error_at_its_place() {
         ("implicit(function(p) p == [0, 0, 0] ? 1 : 2);", "whether coordinates are equal", "p == [0"),
         ("implicit(function(p) p.x & 3);", "the bits of a coordinate", "p.x & 3"),
         ("implicit(function(p) p.x + \"a\");", "formula + string", "p.x + \"a\""),
+        ("implicit(function(p) len(str(p)));", "the text of str() depends on a coordinate", "str(p)"),
         ("implicit(function(p) p.x > 0 ? [1] : 2);", "by a coordinate", "p.x > 0 ?"),
     ];
     for (text, message, place) in cases {

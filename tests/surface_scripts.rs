@@ -198,7 +198,7 @@ fn what_is_wrong_is_said() {
         ("tube([[0,0,0],[1,0,0],[0,0,0]], kind = \"line\");", "the path turns back on itself"),
         ("parametric(3);", "parametric needs a function"),
         ("parametric(function(u, v) [u, v]);", "must give three numbers, not [formula, formula]"),
-        ("parametric(function(u, v) [u, v, str(u)]);", "must give three numbers"),
+        ("parametric(function(u, v) [u, v, \"u\"]);", "must give three numbers"),
         (
             "parametric(function(u, v) [u, v, 0], u = [1, 0]);",
             "u must be a range [from, to] of finite numbers",

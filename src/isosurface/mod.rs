@@ -67,8 +67,8 @@ pub struct Report {
     pub bounds: Aabb,
     /// Triangles on the box, where the shape leaves it.
     pub capped: usize,
-    /// The proven bound of the distance between mesh and surface, either way and but for caps and the places
-    /// listed below: the tolerance. `None` when the field brings no ranges, or no proof was asked for.
+    /// The proven bound of the distance between mesh and surface, either way and but for caps, places without a value and
+    /// jumps: the tolerance. `None` when the field brings no ranges, no proof was asked for, or it failed somewhere.
     pub certified: Option<f64>,
     /// The greatest distance measured at the middles of triangles; no bound.
     pub measured: f64,
@@ -272,7 +272,7 @@ pub fn mesh_with_progress(
             show(Stage::Extract);
             extracted = extract(&refinement);
         }
-        report.certified = Some(options.tolerance);
+        report.certified = report.unproven.is_empty().then_some(options.tolerance);
     } else if refinement.is_ranged() {
         report.unproven = refinement.given_up();
     }

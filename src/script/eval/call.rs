@@ -328,7 +328,7 @@ impl<'p> Machine<'p> {
             Action::Missing => return Err(self.missing(span, builtin.name)),
             Action::Module(_) | Action::NamedFunction(_) | Action::Nothing => Ok(Value::Undef),
         };
-        if self.tracing.is_some() && outcome.is_err() {
+        if self.tracing.is_some() && matches!(outcome, Err(_) | Ok(Value::Text(_))) {
             let arguments = self.stack.split_off(base);
             self.refuse_untraced(&outcome, &arguments, builtin.name, span)?;
         }

@@ -153,6 +153,9 @@ impl Machine<'_> {
             Err(Fault::Undefined(text)) if arguments.iter().any(formula::is_in) => {
                 Err(self.untraceable(&format!("{name}(): {text}"), span))
             }
+            Ok(Value::Text(_)) if arguments.iter().any(formula::is_in) => {
+                Err(self.unknown(&format!("the text of {name}()"), span))
+            }
             _ => Ok(()),
         }
     }
@@ -167,9 +170,15 @@ impl Machine<'_> {
 
     fn untraceable(&mut self, why: &str, span: Span) -> Failure {
         let complaint = Complaint::error(span, format!("this cannot be traced into a formula: {why}"));
-        self.say(complaint.hint(
-            "implicit() and parametric() call their function once, for all places: arithmetic, min, max, abs, sqrt, sin, ?: and the like can be traced",
-        ));
+        let hint = match self.tracing {
+            Some(Traced::Surface) => {
+                "parametric() calls its function once, for all u and v: arithmetic, min, max, abs, sqrt, sin and the like can be traced"
+            }
+            _ => {
+                "implicit() calls its function once, for all points: arithmetic, min, max, abs, sqrt, sin, ?: and the like can be traced"
+            }
+        };
+        self.say(complaint.hint(hint));
         Failure::Error
     }
 }
