@@ -1,10 +1,11 @@
 //! What is measured.
 
 use crate::oracle::random::SplitMix;
+use crate::real;
 use crate::solids::{all_of, ball, cube, difference, mapped, union};
 use crate::specimens::{self, Expected, Specimen};
 use ogee::boolean::{Op, Tree};
-use ogee::math::Vec3;
+use ogee::math::{Aabb, Vec3};
 use ogee::mesh::Mesh;
 
 /// A case by name; its operands are made when it is run.
@@ -78,6 +79,13 @@ pub(crate) fn all() -> Vec<Case> {
             .push(Case::new(&format!("ball and itself turned by 1e-{exponent}"), move || turned_ball(angle)));
     }
     cases.push(Case::new("terrain of 200k triangles minus 1024 domes", terrain));
+    for name in real::names() {
+        for pose in 1..=3 {
+            cases.push(
+                Case::new(&format!("{name} minus itself posed {pose}"), move || posed(name, pose)).imported(),
+            );
+        }
+    }
     cases
 }
 
@@ -118,6 +126,20 @@ fn turned_ball(angle: f64) -> Work {
     let a = ball(35, 1.0, Vec3::ZERO);
     let b = mapped(&a, &specimens::about(Vec3::new(1.0, 2.0, 3.0), angle));
     Work { tree: all_of(Op::Union, 2), operands: vec![a, b], known: ONE_PIECE }
+}
+
+/// A mesh and itself, turned anyhow about its middle and moved by up to a quarter of its size.
+fn posed(name: &str, pose: u64) -> Work {
+    let mut random = SplitMix::new(pose);
+    let mut vector = || Vec3::new(random.unit(), random.unit(), random.unit()) - Vec3::splat(0.5);
+    let (axis, along) = (vector(), vector());
+    let mesh = real::mesh(name);
+    let bounds = Aabb::of(mesh.positions.iter().copied());
+    let middle = |by: Vec3| [[1.0, 0.0, 0.0, by.x], [0.0, 1.0, 0.0, by.y], [0.0, 0.0, 1.0, by.z]];
+    let centred = mapped(&mesh, &middle(-bounds.center()));
+    let turned = mapped(&centred, &specimens::about(axis, 6.0 * random.unit()));
+    let moved = mapped(&turned, &middle(along * 0.5 * bounds.size()));
+    Work { tree: difference(2), operands: vec![centred, moved], known: Known::default() }
 }
 
 fn terrain() -> Work {

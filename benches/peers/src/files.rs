@@ -64,5 +64,6 @@ fn tree_value(tree: &Tree) -> Value {
             list.extend(children.iter().map(tree_value));
             Value::Array(list)
         }
+        Tree::AtLeast(..) => unreachable!("no case has one: the peer has no such operation"),
     }
 }

@@ -15,6 +15,7 @@ mod specimens;
 
 mod cases;
 mod files;
+mod real;
 mod work;
 
 use cases::{Case, Known};
@@ -55,6 +56,11 @@ struct Options {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    let is_ours = options.work.is_some() || options.list;
+    let python = if is_ours { PathBuf::new() } else { environment(&options.python)? };
+    if !is_ours {
+        real::fetch(&python);
+    }
     let cases = cases::all();
     if let Some([name, folder]) = options.work.as_deref() {
         let case = cases.iter().find(|case| case.name == *name).ok_or("no such case")?;
@@ -65,7 +71,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         chosen.iter().for_each(|case| println!("{}", case.name));
         return Ok(());
     }
-    let python = environment(&options.python)?;
     println!(
         "case,threads,triangles in,ours s,manifold3d s,ratio,ours MB,manifold3d MB,memory ratio,ours triangles,\
          manifold3d triangles,ours volume error,manifold3d volume error,note"

@@ -7,8 +7,8 @@ mod measure;
 use kurbo::{CurveFitSample, ParamCurveFit, Shape};
 use measure::{between, cusps, samples, two_sided};
 use ogee::curve::{
-    Bernstein, Cubic, Join, Path, Piece, Ray, Side, Source, Spline, Stroke, Subpath, fit, nearest, offset, simplify,
-    stroke,
+    Bernstein, Cubic, Join, Path, Piece, Ray, Side, Source, Spline, Stroke, Subpath, fit, nearest, offset,
+    simplify, stroke,
 };
 use ogee::math::{Vec2, cos, sin};
 use std::hint::black_box;
