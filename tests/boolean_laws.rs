@@ -38,8 +38,9 @@ fn pairs_obey_the_laws() {
     assert!(failed.is_empty(), "{} of {count} pairs failed: {failed:?}", failed.len());
 }
 
-/// Pairs that broke a law once, and why: wedges that touch along an edge, paired anew, were not known to touch.
-const FAILED_ONCE: [u64; 1] = [6_007_481];
+/// Pairs that broke a law once, and why: wedges that touch along an edge, paired anew, were not known to touch; a ray
+/// started on a line in which two planes only touch its own.
+const FAILED_ONCE: [u64; 2] = [6_007_481, 6_075_021];
 
 /// What was seen beside the laws.
 #[derive(Debug, Default)]

@@ -47,7 +47,7 @@ impl<'a> RayCaster<'a> {
     pub(super) fn cast(&mut self, anchor: &Anchor) -> (bool, Vec<(u32, i32)>) {
         // Above the plane, or, when that stands upright, to where the ray is moved.
         let side = [2, 0, 1].map(|axis| anchor.plane.normal_sign(axis)).into_iter().find(|&sign| sign != 0);
-        let start = Start::new(self.scene.points(), anchor.corners);
+        let start = Start::new(self.scene.points(), anchor);
         let column = start.column();
         let mut near = Vec::new();
         self.members.touching(&self.boxes, column, |member| near.push(member));
@@ -92,12 +92,15 @@ struct Start {
     error: f64,
     numerators: [Numerator; 3],
     denominator: Denominator,
+    /// The plane it starts beside.
+    home: Plane,
 }
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 
 impl Start {
-    fn new(points: &Points, corners: [PointId; 3]) -> Start {
+    fn new(points: &Points, anchor: &Anchor) -> Start {
+        let corners = anchor.corners;
         let places = corners.map(|p| points.rounded(p));
         let [(a, u), (b, v), (c, w)] = corners.map(|p| points.homogeneous(p));
         let product = |x: &Wide<6>, y: &Wide<6>| -> Wide<12> { x.times(y) };
@@ -111,6 +114,7 @@ impl Start {
             error: 8.0 * UNIT * largest,
             numerators: [numerator(0), numerator(1), numerator(2)],
             denominator,
+            home: anchor.plane,
         }
     }
 
@@ -131,7 +135,8 @@ impl Start {
         }
         // The triangle faces up when it runs counter-clockwise around the ray; the start is below it when it is behind.
         let plane = scene.plane_through(triangle);
-        if self.side(&plane) == -turn { turn } else { 0 }
+        let side = [self.side(&plane), self.side_when_moved(&plane)].into_iter().find(|&side| side != 0);
+        if side == Some(-turn) { turn } else { 0 }
     }
 
     /// 1 when the moved ray passes to the left of the segment seen from above; 0 only for an upright segment.
@@ -173,6 +178,19 @@ impl Start {
         let sa: Wide<26> = start[0].times::<7, 26>(&a[1]).minus(&start[1].times(&a[0]));
         let sum: Wide<32> = ab.times(&self.denominator);
         sum.plus(&bs.times(&aw)).plus(&sa.times(&bw)).signum()
+    }
+
+    /// On which side of a plane through the centroid the start lies once the ray is moved: along its own plane, and above
+    /// that by less than any move; beside an upright plane just sideways.
+    fn side_when_moved(&self, plane: &Plane) -> i32 {
+        let normal = [0, 1, 2].map(|axis| plane.normal_sign(axis));
+        let up = self.home.normal_sign(2);
+        let moves = match up {
+            0 => normal,
+            // The plane's height over its own plane grows along x and y with these components of the normals' product.
+            _ => [-up * plane.cross_sign(&self.home, 1), up * plane.cross_sign(&self.home, 0), normal[2]],
+        };
+        moves.into_iter().find(|&sign| sign != 0).unwrap_or(0)
     }
 
     /// On which side of a plane the start lies.
