@@ -107,8 +107,8 @@ impl Body {
             None => world.places.add_all(&mesh.positions),
         };
         taken_by.resize(world.points().len().max(taken_by.len()), NONE);
-        let mut shares = |p: &PointId| std::mem::replace(&mut taken_by[p.0 as usize], index) == index;
-        let may_be_pinched = ids.iter().any(&mut shares);
+        let shares = |p: &PointId| std::mem::replace(&mut taken_by[p.0 as usize], index) == index;
+        let may_be_pinched = ids.iter().any(shares);
         let mut body = Body { may_be_pinched, ..Body::default() };
         body.corners.reserve(mesh.triangles.len());
         body.births.reserve(mesh.triangles.len());

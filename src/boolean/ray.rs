@@ -135,8 +135,11 @@ impl Start {
         }
         // The triangle faces up when it runs counter-clockwise around the ray; the start is below it when it is behind.
         let plane = scene.plane_through(triangle);
-        let side = [self.side(&plane), self.side_when_moved(&plane)].into_iter().find(|&side| side != 0);
-        if side == Some(-turn) { turn } else { 0 }
+        let side = match self.side(&plane) {
+            0 => self.side_when_moved(&plane),
+            side => side,
+        };
+        if side == -turn { turn } else { 0 }
     }
 
     /// 1 when the moved ray passes to the left of the segment seen from above; 0 only for an upright segment.
