@@ -3,7 +3,7 @@
 use super::slide::{self, Turned};
 use super::table::Table;
 use crate::math::Vec3;
-use crate::surface::Surface;
+use crate::surface::{Jet, Surface};
 
 /// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
 pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
@@ -173,40 +173,53 @@ pub(super) fn measure(
 }
 
 /// The distance of a place from the surface near some parameters: Gauss-Newton steps inside the domain as long as they
-/// bring it much nearer.
+/// bring it much nearer, damped where the surface folds or stands still and a whole step leads away.
 fn distance_from(surface: &dyn Surface, domain: [[f64; 2]; 2], place: Vec3, start: [f64; 2]) -> f64 {
     const STEPS: usize = 12;
     const MUCH: f64 = 0.9;
+    const DAMPING: [f64; 4] = [0.0, 0.01, 0.3, 10.0];
     let mut at = start;
     let mut jet = surface.jet(at[0], at[1]);
     let mut distance = (place - jet.point).length();
     for _ in 0..STEPS {
-        let off = place - jet.point;
-        let [e, f, g] = jet.first_form();
-        let (a, b) = (off.dot(jet.du), off.dot(jet.dv));
-        let determinant = e * g - f * f;
-        let clamped = |axis: usize, t: f64| t.clamp(domain[axis][0], domain[axis][1]);
-        let free = [at[0] + (g * a - f * b) / determinant, at[1] + (e * b - f * a) / determinant];
-        if !(free[0].is_finite() && free[1].is_finite()) {
-            break;
-        }
-        let mut next = [clamped(0, free[0]), clamped(1, free[1])];
-        // On a side of the domain the best is along it.
-        if next[0] != free[0] && next[1] == free[1] && g > 0.0 {
-            next[1] = clamped(1, at[1] + (b - f * (next[0] - at[0])) / g);
-        } else if next[1] != free[1] && next[0] == free[0] && e > 0.0 {
-            next[0] = clamped(0, at[0] + (a - f * (next[1] - at[1])) / e);
-        }
-        let new = surface.jet(next[0], next[1]);
-        let nearer = (place - new.point).length();
-        if nearer >= distance || nearer.is_nan() {
-            break;
-        }
-        let enough = nearer > MUCH * distance;
-        (at, jet, distance) = (next, new, nearer);
+        let steps = DAMPING.into_iter().filter_map(|damping| damped_step(&jet, domain, place, at, damping));
+        let found = steps.map(|next| (next, surface.jet(next[0], next[1])));
+        let mut found = found.map(|(next, jet)| (next, jet, (place - jet.point).length()));
+        let Some(nearer) = found.find(|&(.., new)| new < distance) else { break };
+        let enough = nearer.2 > MUCH * distance;
+        (at, jet, distance) = nearer;
         if enough {
             break;
         }
     }
     distance
+}
+
+/// Where a Gauss-Newton step leads within the domain (Levenberg, A method for the solution of certain non-linear problems
+/// in least squares, 1944, for damping).
+fn damped_step(
+    jet: &Jet,
+    domain: [[f64; 2]; 2],
+    place: Vec3,
+    at: [f64; 2],
+    damping: f64,
+) -> Option<[f64; 2]> {
+    let off = place - jet.point;
+    let [e, f, g] = jet.first_form();
+    let (e, g) = (e + damping * (e + g), g + damping * (e + g));
+    let (a, b) = (off.dot(jet.du), off.dot(jet.dv));
+    let determinant = e * g - f * f;
+    let clamped = |axis: usize, t: f64| t.clamp(domain[axis][0], domain[axis][1]);
+    let free = [at[0] + (g * a - f * b) / determinant, at[1] + (e * b - f * a) / determinant];
+    if !(free[0].is_finite() && free[1].is_finite()) {
+        return None;
+    }
+    let mut next = [clamped(0, free[0]), clamped(1, free[1])];
+    // On a side of the domain the best is along it.
+    if next[0] != free[0] && next[1] == free[1] && g > 0.0 {
+        next[1] = clamped(1, at[1] + (b - f * (next[0] - at[0])) / g);
+    } else if next[1] != free[1] && next[0] == free[0] && e > 0.0 {
+        next[0] = clamped(0, at[0] + (a - f * (next[1] - at[1])) / e);
+    }
+    Some(next)
 }

@@ -1,7 +1,7 @@
 //! The vertices of edges, each from its curve alone.
 
 use super::layout::{Curve, EdgeUse, Layout};
-use super::{Guarantee, SurfaceOptions, TessellationError};
+use super::{Care, Guarantee, SurfaceOptions, TessellationError};
 use crate::math::Vec3;
 use std::collections::BTreeMap;
 
@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 pub(super) const SHARE: f64 = 0.5;
 /// Intervals of an edge on which its bending is bounded.
 const INTERVALS: usize = 16;
+/// Segments shorter than this, over the size of their parameters, are not halved any more.
+const FINEST: f64 = 1e-10;
 
 /// The vertices of all edges.
 pub(super) struct Edges {
@@ -50,13 +52,17 @@ impl Edges {
 pub(super) fn sample_all(
     layout: &Layout<'_>,
     options: &SurfaceOptions,
-    least: usize,
+    care: Care,
 ) -> Result<Edges, TessellationError> {
-    let least_of = least_segments(layout, least);
+    let least_of = least_segments(layout, care.least);
     let indices: Vec<usize> = (0..layout.edges.len()).collect();
     let sampled = crate::par::map_above(64, &indices, |&index| {
         let edge = &layout.edges[index];
-        if edge.pole { Ok(Vec::new()) } else { sample(&edge.curve, options, least_of[index]) }
+        if edge.pole {
+            return Ok(Vec::new());
+        }
+        let asked = Asked { options, by_place: care.by_place, surface: &|| layout.surface_of(index) };
+        sample(&edge.curve, &asked, least_of[index])
     });
     let mut edges = Edges { positions: layout.corners.clone(), parameters: Vec::new(), first: Vec::new() };
     for (edge, parameters) in layout.edges.iter().zip(sampled) {
@@ -66,6 +72,14 @@ pub(super) fn sample_all(
         edges.parameters.push(parameters);
     }
     Ok(edges)
+}
+
+/// What an edge must keep to.
+struct Asked<'a> {
+    options: &'a SurfaceOptions,
+    by_place: bool,
+    /// Whose side it is.
+    surface: &'a dyn Fn() -> usize,
 }
 
 /// A loop needs three segments, and edges between the same corners two each, to be told apart.
@@ -101,51 +115,85 @@ impl Interval {
     }
 }
 
-fn sample(curve: &Curve<'_>, options: &SurfaceOptions, least: usize) -> Result<Vec<f64>, TessellationError> {
+fn sample(curve: &Curve<'_>, asked: &Asked<'_>, least: usize) -> Result<Vec<f64>, TessellationError> {
     /// What segments are multiplied by when some fail.
     const MORE: f64 = 1.0625;
+    /// Times that all segments are laid out together; where they are four times as many as bends ask for, something else
+    /// is the matter.
+    const ROUNDS: usize = 24;
     let [low, high] = curve.range;
     let at = |k: usize| {
         if k == INTERVALS { high } else { low + (high - low) * k as f64 / INTERVALS as f64 }
     };
     let mut intervals: Vec<Interval> =
-        (0..INTERVALS).map(|k| interval(curve, options, [at(k), at(k + 1)])).collect();
+        (0..INTERVALS).map(|k| interval(curve, asked, [at(k), at(k + 1)])).collect();
     let (mut factor, mut count) = (1.0, least);
-    loop {
+    for _ in 0..ROUNDS {
         let total: f64 = intervals.iter().map(|interval| interval.density * interval.width()).sum();
         let wanted = (factor * total - 1e-9).ceil().max(count as f64);
-        let most = options.max_triangles;
+        let most = asked.options.max_triangles;
         if wanted > most as f64 || wanted.is_nan() {
             let triangles = if wanted.is_finite() { wanted as u64 } else { u64::MAX };
             return Err(TessellationError::TooLarge { triangles, most });
         }
         count = wanted as usize;
         let parameters = spread(curve, &intervals, total, count);
-        let failing = failing(curve, options, &intervals, &parameters);
+        let failing = failing(curve, asked, &intervals, &parameters);
         if failing.is_empty() {
             return Ok(parameters);
         }
-        intervals = split(curve, options, intervals, &failing);
+        intervals = split(curve, asked, intervals, &failing);
         (factor, count) = (factor * MORE, count + 1);
     }
+    let parts = least.max(INTERVALS);
+    let end = |k: usize| if k == parts { high } else { low + (high - low) * k as f64 / parts as f64 };
+    let mut parameters = Vec::new();
+    for k in 0..parts {
+        halved(curve, asked, &intervals, [end(k), end(k + 1)], &mut parameters)?;
+    }
+    parameters.pop();
+    Ok(parameters)
+}
+
+/// Halves a segment until every part keeps its share, and adds the end of each: for cusps, where bends tell nothing.
+fn halved(
+    curve: &Curve<'_>,
+    asked: &Asked<'_>,
+    intervals: &[Interval],
+    [a, b]: [f64; 2],
+    parameters: &mut Vec<f64>,
+) -> Result<(), TessellationError> {
+    if segment_holds(curve, asked, intervals, [a, b]) {
+        parameters.push(b);
+        return Ok(());
+    }
+    let middle = 0.5 * a + 0.5 * b;
+    if b - a <= FINEST * (curve.range[1] - curve.range[0]).max(middle.abs()) {
+        return Err(TessellationError::NotReached {
+            surface: (asked.surface)(),
+            parameters: curve.parameters(middle),
+        });
+    }
+    halved(curve, asked, intervals, [a, middle], parameters)?;
+    halved(curve, asked, intervals, [middle, b], parameters)
 }
 
 /// Halves the intervals with these indices, which ascend, as long as they are not tiny.
-fn split(
-    curve: &Curve<'_>,
-    options: &SurfaceOptions,
-    intervals: Vec<Interval>,
-    failing: &[usize],
-) -> Vec<Interval> {
+fn split(curve: &Curve<'_>, asked: &Asked<'_>, intervals: Vec<Interval>, failing: &[usize]) -> Vec<Interval> {
     /// Over the range of the curve.
     const TINY: f64 = 1e-7;
+    /// Bends are known well enough where there are so many intervals.
+    const MANY: usize = 4096;
     let least = TINY * (curve.range[1] - curve.range[0]);
+    if intervals.len() > MANY {
+        return intervals;
+    }
     let mut halves = Vec::with_capacity(intervals.len() + failing.len());
     for (index, whole) in intervals.into_iter().enumerate() {
         if failing.binary_search(&index).is_ok() && whole.width() > least {
             let [low, high] = whole.range;
             let middle = 0.5 * low + 0.5 * high;
-            halves.extend([[low, middle], [middle, high]].map(|range| interval(curve, options, range)));
+            halves.extend([[low, middle], [middle, high]].map(|range| interval(curve, asked, range)));
         } else {
             halves.push(whole);
         }
@@ -153,7 +201,8 @@ fn split(
     halves
 }
 
-fn interval(curve: &Curve<'_>, options: &SurfaceOptions, range: [f64; 2]) -> Interval {
+fn interval(curve: &Curve<'_>, asked: &Asked<'_>, range: [f64; 2]) -> Interval {
+    let Asked { options, by_place, .. } = *asked;
     let middle = 0.5 * range[0] + 0.5 * range[1];
     let places = [range[0], middle, range[1]];
     let tolerance =
@@ -165,9 +214,9 @@ fn interval(curve: &Curve<'_>, options: &SurfaceOptions, range: [f64; 2]) -> Int
         Guarantee::Proven => curve.second_bound(range),
         Guarantee::Measured => None,
     };
-    // What bends along the curve only is no error.
+    // What bends along the curve only is no error but from place to place.
     let across = |[first, second]: [Vec3; 2]| {
-        let along = first.normalize_or_zero();
+        let along = if by_place { Vec3::ZERO } else { first.normalize_or_zero() };
         (second - second.dot(along) * along).length()
     };
     let measured = || derivatives.iter().map(|&both| across(both)).fold(0.0, f64::max);
@@ -177,7 +226,11 @@ fn interval(curve: &Curve<'_>, options: &SurfaceOptions, range: [f64; 2]) -> Int
         if speed > 0.0 { across(both) / speed } else { 0.0 }
     };
     let turning = derivatives.iter().map(|&both| turn(both)).fold(0.0, f64::max);
-    let density = (bend / (8.0 * SHARE)).sqrt().max(options.angle.map_or(0.0, |angle| turning / angle));
+    let by_bend = (bend / (8.0 * SHARE)).sqrt();
+    // What is no longer than the tolerance needs no more, however it bends; twice as many, since speeds were only sampled.
+    let speed = derivatives.iter().map(|both| both[0].length()).fold(0.0, f64::max);
+    let enough = if proven.is_some() { f64::INFINITY } else { speed / (SHARE * tolerance) };
+    let density = by_bend.min(enough).max(options.angle.map_or(0.0, |angle| turning / angle));
     Interval { range, bend, proven: proven.is_some(), density, tolerance }
 }
 
@@ -204,19 +257,14 @@ fn spread(curve: &Curve<'_>, intervals: &[Interval], total: f64, count: usize) -
 }
 
 /// The intervals that segments meet which do not keep their share of the tolerance.
-fn failing(
-    curve: &Curve<'_>,
-    options: &SurfaceOptions,
-    intervals: &[Interval],
-    parameters: &[f64],
-) -> Vec<usize> {
+fn failing(curve: &Curve<'_>, asked: &Asked<'_>, intervals: &[Interval], parameters: &[f64]) -> Vec<usize> {
     let [low, high] = curve.range;
     let bounds: Vec<f64> = std::iter::once(low).chain(parameters.iter().copied()).chain([high]).collect();
-    let index = |t: f64| intervals.partition_point(|i| i.range[1] <= t).min(intervals.len() - 1);
     let mut all = Vec::new();
     for pair in bounds.windows(2) {
-        let [first, last] = [pair[0], pair[1]].map(index);
-        if !holds(curve, options, &intervals[first..=last], [pair[0], pair[1]]) {
+        let pair = [pair[0], pair[1]];
+        if !segment_holds(curve, asked, intervals, pair) {
+            let [first, last] = met(intervals, pair);
             all.extend(first..=last);
         }
     }
@@ -224,29 +272,39 @@ fn failing(
     all
 }
 
+/// The first and the last of the intervals that a segment meets.
+fn met(intervals: &[Interval], segment: [f64; 2]) -> [usize; 2] {
+    segment.map(|t| intervals.partition_point(|i| i.range[1] <= t).min(intervals.len() - 1))
+}
+
+fn segment_holds(curve: &Curve<'_>, asked: &Asked<'_>, intervals: &[Interval], segment: [f64; 2]) -> bool {
+    let [first, last] = met(intervals, segment);
+    holds(curve, asked, &intervals[first..=last], segment)
+}
+
 /// Whether a segment keeps its share of the tolerance.
-fn holds(curve: &Curve<'_>, options: &SurfaceOptions, met: &[Interval], [a, b]: [f64; 2]) -> bool {
+fn holds(curve: &Curve<'_>, asked: &Asked<'_>, met: &[Interval], [a, b]: [f64; 2]) -> bool {
     let tolerance = met.iter().map(|interval| interval.tolerance).fold(f64::INFINITY, f64::min);
     let square = (b - a) * (b - a) / 8.0;
     if met.iter().all(|interval| interval.proven && interval.bend * square <= SHARE) {
         return true;
     }
-    match options.guarantee {
+    match asked.options.guarantee {
         Guarantee::Proven if let Some(bound) = curve.second_bound([a, b]) => {
             bound * square <= SHARE * tolerance
         }
-        _ => deviation(curve, a, b) <= SHARE * tolerance,
+        _ => deviation(curve, [a, b], asked.by_place) <= SHARE * tolerance,
     }
 }
 
-/// The largest distance of three points of the curve from a chord.
-fn deviation(curve: &Curve<'_>, a: f64, b: f64) -> f64 {
+/// The largest distance of three points of the curve from a chord, or from their places on it.
+fn deviation(curve: &Curve<'_>, [a, b]: [f64; 2], by_place: bool) -> f64 {
     let (from, to) = (curve.point(a), curve.point(b));
     let chord = to - from;
     let distance = |share: f64| {
         let off = curve.point(a + share * (b - a)) - from;
         let along = (off.dot(chord) / chord.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        (off - along * chord).length()
+        (off - if by_place { share } else { along } * chord).length()
     };
     [0.25, 0.5, 0.75].map(distance).into_iter().fold(0.0, f64::max)
 }

@@ -12,6 +12,9 @@ pub(super) struct Node {
     pub(super) free: Option<usize>,
 }
 
+/// Ends of rows that stick out less than this are in line.
+const STRAIGHT: f64 = 1e-6;
+
 /// A vertex by its number in the piece.
 pub(super) type Local = u32;
 
@@ -203,11 +206,8 @@ impl Frame<'_> {
                 let triangle = if of_right { [a, b, new] } else { [b, a, new] };
                 // Where rows run along v the plane is seen from behind.
                 let [p, q, r] = triangle.map(at);
-                let sticks_out = if axis == 1 {
-                    turns_left([p, q, r], self.domain)
-                } else {
-                    turns_left([q, p, r], self.domain)
-                };
+                let sticks_out =
+                    if axis == 1 { turns_left([p, q, r], STRAIGHT) } else { turns_left([q, p, r], STRAIGHT) };
                 if !sticks_out {
                     break;
                 }
@@ -236,10 +236,11 @@ pub(super) fn settled(triangle: [Node; 3]) -> [[f64; 2]; 3] {
     at
 }
 
-/// Whether three places run counter-clockwise, beyond rounding.
-fn turns_left([p, q, r]: [[f64; 2]; 3], [u, v]: [[f64; 2]; 2]) -> bool {
+/// Whether a triangle runs counter-clockwise in the plane of parameters, by a share of what would cancel in its area.
+pub(super) fn turns_left([p, q, r]: [[f64; 2]; 3], share: f64) -> bool {
     let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-    a[0] * b[1] - a[1] * b[0] > 1e-14 * (u[1] - u[0]) * (v[1] - v[0])
+    let (left, right) = (a[0] * b[1], a[1] * b[0]);
+    left - right > share * (left.abs() + right.abs())
 }
 
 /// Inner ends of so many segments of a range, each of which holds as much of a density that is constant on equal cells.

@@ -63,7 +63,7 @@ impl Curve<'_> {
         }
     }
 
-    fn parameters(&self, t: f64) -> [f64; 2] {
+    pub(super) fn parameters(&self, t: f64) -> [f64; 2] {
         if self.axis == 0 { [t, self.fixed] } else { [self.fixed, t] }
     }
 
@@ -101,6 +101,12 @@ struct Builder<'a> {
 }
 
 impl<'a> Layout<'a> {
+    /// A surface that has an edge.
+    pub(super) fn surface_of(&self, edge: usize) -> usize {
+        let has_it = |piece: &&Piece| piece.edges.iter().any(|side| side.edge == edge);
+        self.pieces.iter().find(has_it).map_or(0, |piece| piece.surface)
+    }
+
     pub(super) fn new(surfaces: &'a [&'a dyn Surface]) -> Result<Layout<'a>, TessellationError> {
         let layout =
             Layout { surfaces, pieces: Vec::new(), edges: Vec::new(), corners: Vec::new(), size: 0.0 };

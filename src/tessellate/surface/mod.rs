@@ -259,40 +259,48 @@ pub fn surfaces(
     options: &SurfaceOptions,
 ) -> Result<Tessellation, TessellationError> {
     check_options(options)?;
-    // Coarse vertices can name one edge twice, and beside a straight side of a twisted surface long edges can be too far
-    // off; more vertices on every edge help with both.
+    // Coarse vertices can name one edge twice; more vertices on every edge help.
     const ATTEMPTS: [usize; 8] = [1, 2, 3, 5, 9, 17, 33, 65];
     let layout = Layout::new(surfaces)?;
     layout.check_precision(options)?;
-    let mut failed = None;
+    let (mut tangled, mut by_place) = (None, false);
     for least in ATTEMPTS {
-        let tessellation = match attempt(&layout, options, least) {
-            Ok(tessellation) => tessellation,
-            Err(error @ TessellationError::NotReached { .. }) => {
-                failed.get_or_insert(error);
-                continue;
-            }
-            Err(error) => return Err(failed.unwrap_or(error)),
-        };
+        let mut made = attempt(&layout, options, Care { least, by_place });
+        if !by_place && matches!(made, Err(TessellationError::NotReached { .. })) {
+            by_place = true;
+            made = attempt(&layout, options, Care { least, by_place });
+        }
+        let tessellation = made.map_err(|error| tangled.unwrap_or(error))?;
         let defects = Defects::of(&tessellation.mesh);
         let edges = defects.non_manifold_edges.saturating_sub(layout.crowded_edges());
         if edges == 0 && defects.duplicate_triangles == 0 {
             return Ok(tessellation);
         }
-        failed.get_or_insert(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
+        tangled.get_or_insert(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
     }
-    Err(failed.expect("there was an attempt"))
+    Err(tangled.expect("there was an attempt"))
+}
+
+/// How an attempt goes about it.
+#[derive(Clone, Copy)]
+struct Care {
+    /// Segments that every edge has.
+    least: usize,
+    /// Edges keep their tolerance from place to place, as they are parametrised, not only as a whole; and triangles are
+    /// halved where they are longest in space, without flips. That takes more triangles, and ends wherever the surface is
+    /// continuous: what has shrunk to a point is no longer off. Folds and cusps need it.
+    by_place: bool,
 }
 
 fn attempt(
     layout: &Layout<'_>,
     options: &SurfaceOptions,
-    least: usize,
+    care: Care,
 ) -> Result<Tessellation, TessellationError> {
-    let edges = edge::sample_all(layout, options, least)?;
+    let edges = edge::sample_all(layout, options, care)?;
     let room = options.max_triangles.min(TooLarge::MOST);
     let made = crate::par::map_above(2, &layout.pieces, |piece| {
-        piece::tessellate(layout, piece, &edges, options, room)
+        piece::tessellate(layout, piece, &edges, options, care, room)
     });
     let mut tessellation = Tessellation {
         mesh: Mesh::new(edges.positions.clone(), Vec::new()),

@@ -5,7 +5,7 @@ use super::frame::{Frame, Local, Node};
 use super::layout::{Layout, Piece};
 use super::refine::Refinement;
 use super::table::Table;
-use super::{SurfaceOptions, TessellationError, check};
+use super::{Care, SurfaceOptions, TessellationError, check};
 use crate::math::Vec3;
 use crate::surface::{Side, Surface};
 
@@ -50,6 +50,7 @@ pub(super) fn tessellate(
     piece: &Piece,
     edges: &Edges,
     options: &SurfaceOptions,
+    care: Care,
     room: u64,
 ) -> Result<Made, TessellationError> {
     let surface = layout.surfaces[piece.surface];
@@ -73,7 +74,7 @@ pub(super) fn tessellate(
     });
     let positions = positions.collect();
     let mut refinement = Refinement::new(surface, &table, nodes, positions, triangles);
-    refinement.run(room).map_err(|error| error.of(piece.surface))?;
+    refinement.run(care, room).map_err(|error| error.of(piece.surface))?;
     Ok(finish(surface, &table, &refinement))
 }
 

@@ -2,9 +2,9 @@
 //! those neighbours first whose longest edge it is not (Rivara, New longest-edge algorithms for the refinement and/or
 //! improvement of unstructured triangulations, 1997).
 
-use super::frame::{Local, Node, settled};
+use super::frame::{Local, Node, settled, turns_left};
 use super::table::Table;
-use super::{TessellationError, check};
+use super::{Care, TessellationError, check};
 use crate::math::Vec3;
 use crate::mesh::Topology;
 use crate::surface::Surface;
@@ -16,6 +16,10 @@ const MEASURED_SHARE: f64 = 0.95;
 const SURE: f64 = 0.5;
 /// Parameters nearer than this, over their own size and that of the domain, are not split any more.
 const FINEST: f64 = 1e-10;
+/// Triangles that are flatter are so by rounding.
+const FLAT: f64 = 1e-9;
+/// No flip makes triangles as thin askew: split again, they would become flat.
+const THINNEST: f64 = 1e-3;
 
 pub(super) struct Refinement<'a> {
     surface: &'a dyn Surface,
@@ -72,7 +76,7 @@ impl<'a> Refinement<'a> {
     }
 
     /// Mends until every triangle passes.
-    pub(super) fn run(&mut self, room: u64) -> Result<(), Stopped> {
+    pub(super) fn run(&mut self, care: Care, room: u64) -> Result<(), Stopped> {
         if let Some(place) = self.positions.iter().position(|point| !point.is_finite()) {
             return Err(Stopped::NotFinite(self.nodes[place].at));
         }
@@ -81,10 +85,12 @@ impl<'a> Refinement<'a> {
             if self.ratios[t as usize] <= 1.0 {
                 continue;
             }
-            let touched = match self.better_flip(t) {
+            let better = || if care.by_place { None } else { self.better_flip(t) };
+            let flip = self.flip_of_thin(t).or_else(better);
+            let touched = match flip {
                 Some(half_edge) => self.flip(half_edge).to_vec(),
                 None => {
-                    let half_edge = self.edge_to_split(t)?;
+                    let half_edge = self.edge_to_split(t, care.by_place)?;
                     if self.triangles.len() as u64 >= room {
                         return Err(Stopped::TooLarge(room));
                     }
@@ -153,6 +159,21 @@ impl<'a> Refinement<'a> {
         })
     }
 
+    /// The side of a thin triangle whose flip leaves none: halves of it would become flat.
+    fn flip_of_thin(&self, t: u32) -> Option<u32> {
+        let is_thin = |triangle: [Local; 3]| !turns_left(self.parameters(triangle), THINNEST);
+        if !is_thin(self.triangles[t as usize]) {
+            return None;
+        }
+        (3 * t..3 * t + 3).find(|&half_edge| {
+            self.around(half_edge).is_some_and(|corners| {
+                let has_pole = corners.iter().any(|&local| self.nodes[local as usize].free.is_some());
+                let [a, b, c, d] = corners;
+                !has_pole && ![[c, d, b], [d, c, a]].into_iter().any(is_thin)
+            })
+        })
+    }
+
     /// The side of a triangle whose flip makes the worse of its two triangles better, the best of them.
     fn better_flip(&self, t: u32) -> Option<u32> {
         let mut best: Option<(f64, u32)> = None;
@@ -162,7 +183,7 @@ impl<'a> Refinement<'a> {
                 continue;
             }
             let new = [[c, d, b], [d, c, a]];
-            if !new.iter().all(|&triangle| self.turns_left(triangle)) {
+            if !new.iter().all(|&triangle| turns_left(self.parameters(triangle), THINNEST)) {
                 continue;
             }
             let twin = self.twins[half_edge as usize];
@@ -174,14 +195,6 @@ impl<'a> Refinement<'a> {
             }
         }
         best.map(|(_, half_edge)| half_edge)
-    }
-
-    /// Whether a triangle runs counter-clockwise in the plane of parameters, beyond rounding.
-    fn turns_left(&self, triangle: [Local; 3]) -> bool {
-        let [p, q, r] = self.parameters(triangle);
-        let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-        let (left, right) = (a[0] * b[1], a[1] * b[0]);
-        left - right > 1e-9 * (left.abs() + right.abs())
     }
 
     /// Replaces the diagonal ab by cd. Returns the triangles that changed.
@@ -212,29 +225,35 @@ impl<'a> Refinement<'a> {
         }
     }
 
-    /// The longest inner side of a triangle, in segments.
-    fn longest(&self, t: u32) -> Option<(f64, u32)> {
-        let at = self.parameters(self.triangles[t as usize]);
+    /// The longest inner side of a triangle, in segments or in space.
+    fn longest(&self, t: u32, in_space: bool) -> Option<(f64, u32)> {
+        let triangle = self.triangles[t as usize];
+        let at = self.parameters(triangle);
         let length = |h: u32| {
-            let k = h as usize % 3;
-            self.table.length_squared(at[k], at[(k + 1) % 3])
+            let (k, next) = (h as usize % 3, (h as usize + 1) % 3);
+            if !in_space {
+                return self.table.length_squared(at[k], at[next]);
+            }
+            // Over the middle: a fold can bring the ends together.
+            let middle = self.surface.point(0.5 * (at[k][0] + at[next][0]), 0.5 * (at[k][1] + at[next][1]));
+            [k, next].map(|k| self.positions[triangle[k] as usize].distance(middle)).into_iter().sum()
         };
         let inner = (3 * t..3 * t + 3).filter(|&h| self.twins[h as usize] != NONE);
         inner.map(|h| (length(h), h)).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// From a triangle over longest sides to one that is the longest on both of its own.
-    fn edge_to_split(&self, t: u32) -> Result<u32, Stopped> {
+    fn edge_to_split(&self, t: u32, in_space: bool) -> Result<u32, Stopped> {
         let nowhere = || Stopped::NotReached(self.parameters(self.triangles[t as usize])[0]);
         // What fails without any width, on an edge that cannot be split, fails for ever. At a pole parameters are any.
         let has_pole = self.triangles[t as usize].iter().any(|&v| self.nodes[v as usize].free.is_some());
-        if !has_pole && !self.turns_left(self.triangles[t as usize]) {
+        if !has_pole && !turns_left(self.parameters(self.triangles[t as usize]), FLAT) {
             return Err(nowhere());
         }
-        let (mut length, mut half_edge) = self.longest(t).ok_or_else(nowhere)?;
+        let (mut length, mut half_edge) = self.longest(t, in_space).ok_or_else(nowhere)?;
         loop {
             let twin = self.twins[half_edge as usize];
-            match self.longest(twin / 3) {
+            match self.longest(twin / 3, in_space) {
                 Some((longer, next)) if longer > length && next != twin => {
                     (length, half_edge) = (longer, next);
                 }
