@@ -1,5 +1,6 @@
 //! The vertices of edges, each from its curve alone.
 
+use super::frame::FINEST;
 use super::layout::{Curve, EdgeUse, Layout};
 use super::{Care, Guarantee, SurfaceOptions, TessellationError};
 use crate::math::Vec3;
@@ -9,8 +10,6 @@ use std::collections::BTreeMap;
 pub(super) const SHARE: f64 = 0.5;
 /// Intervals of an edge on which its bending is bounded.
 const INTERVALS: usize = 16;
-/// Segments shorter than this, over the size of their parameters, are not halved any more.
-const FINEST: f64 = 1e-10;
 
 /// The vertices of all edges.
 pub(super) struct Edges {

@@ -12,6 +12,9 @@ pub(super) struct Node {
     pub(super) free: Option<usize>,
 }
 
+/// Parameters nearer than this, over their own size and that of the domain, are not told apart.
+pub(super) const FINEST: f64 = 1e-10;
+
 /// Ends of rows that stick out less than this are in line.
 const STRAIGHT: f64 = 1e-6;
 
@@ -206,8 +209,11 @@ impl Frame<'_> {
                 let triangle = if of_right { [a, b, new] } else { [b, a, new] };
                 // Where rows run along v the plane is seen from behind.
                 let [p, q, r] = triangle.map(at);
-                let sticks_out =
-                    if axis == 1 { turns_left([p, q, r], STRAIGHT) } else { turns_left([q, p, r], STRAIGHT) };
+                let sticks_out = if axis == 1 {
+                    turns_left([p, q, r], STRAIGHT, self.domain)
+                } else {
+                    turns_left([q, p, r], STRAIGHT, self.domain)
+                };
                 if !sticks_out {
                     break;
                 }
@@ -236,11 +242,15 @@ pub(super) fn settled(triangle: [Node; 3]) -> [[f64; 2]; 3] {
     at
 }
 
-/// Whether a triangle runs counter-clockwise in the plane of parameters, by a share of what would cancel in its area.
-pub(super) fn turns_left([p, q, r]: [[f64; 2]; 3], share: f64) -> bool {
+/// Whether a triangle runs counter-clockwise in the plane of parameters: by a share of what would cancel in its area, which
+/// tells when it lies askew, and by more than the finest parameters over its sides, which tells when it lies along an axis.
+pub(super) fn turns_left([p, q, r]: [[f64; 2]; 3], share: f64, domain: [[f64; 2]; 2]) -> bool {
     let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
     let (left, right) = (a[0] * b[1], a[1] * b[0]);
-    left - right > share * (left.abs() + right.abs())
+    let extent = |axis: usize| a[axis].abs().max(b[axis].abs());
+    let width = |axis: usize| (domain[axis][1] - domain[axis][0]).abs();
+    let least = FINEST * (extent(0) * width(1) + extent(1) * width(0));
+    left - right > (share * (left.abs() + right.abs())).max(least)
 }
 
 /// Inner ends of so many segments of a range, each of which holds as much of a density that is constant on equal cells.

@@ -2,7 +2,7 @@
 //! those neighbours first whose longest edge it is not (Rivara, New longest-edge algorithms for the refinement and/or
 //! improvement of unstructured triangulations, 1997).
 
-use super::frame::{Local, Node, settled, turns_left};
+use super::frame::{FINEST, Local, Node, settled, turns_left};
 use super::table::Table;
 use super::{Care, TessellationError, check};
 use crate::math::Vec3;
@@ -14,8 +14,6 @@ const NONE: u32 = Topology::NONE;
 const MEASURED_SHARE: f64 = 0.95;
 /// Below this share of what is allowed, distances need no closer look.
 const SURE: f64 = 0.5;
-/// Parameters nearer than this, over their own size and that of the domain, are not split any more.
-const FINEST: f64 = 1e-10;
 /// Triangles that are flatter are so by rounding.
 const FLAT: f64 = 1e-9;
 /// No flip makes triangles as thin askew: split again, they would become flat.
@@ -161,7 +159,7 @@ impl<'a> Refinement<'a> {
 
     /// The side of a thin triangle whose flip leaves none: halves of it would become flat.
     fn flip_of_thin(&self, t: u32) -> Option<u32> {
-        let is_thin = |triangle: [Local; 3]| !turns_left(self.parameters(triangle), THINNEST);
+        let is_thin = |triangle: [Local; 3]| !self.turns_left(triangle, THINNEST);
         if !is_thin(self.triangles[t as usize]) {
             return None;
         }
@@ -183,7 +181,7 @@ impl<'a> Refinement<'a> {
                 continue;
             }
             let new = [[c, d, b], [d, c, a]];
-            if !new.iter().all(|&triangle| turns_left(self.parameters(triangle), THINNEST)) {
+            if !new.iter().all(|&triangle| self.turns_left(triangle, THINNEST)) {
                 continue;
             }
             let twin = self.twins[half_edge as usize];
@@ -195,6 +193,10 @@ impl<'a> Refinement<'a> {
             }
         }
         best.map(|(_, half_edge)| half_edge)
+    }
+
+    fn turns_left(&self, triangle: [Local; 3], share: f64) -> bool {
+        turns_left(self.parameters(triangle), share, self.surface.domain())
     }
 
     /// Replaces the diagonal ab by cd. Returns the triangles that changed.
@@ -247,7 +249,7 @@ impl<'a> Refinement<'a> {
         let nowhere = || Stopped::NotReached(self.parameters(self.triangles[t as usize])[0]);
         // What fails without any width, on an edge that cannot be split, fails for ever. At a pole parameters are any.
         let has_pole = self.triangles[t as usize].iter().any(|&v| self.nodes[v as usize].free.is_some());
-        if !has_pole && !turns_left(self.parameters(self.triangles[t as usize]), FLAT) {
+        if !has_pole && !self.turns_left(self.triangles[t as usize], FLAT) {
             return Err(nowhere());
         }
         let (mut length, mut half_edge) = self.longest(t, in_space).ok_or_else(nowhere)?;
