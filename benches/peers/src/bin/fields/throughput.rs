@@ -1,0 +1,151 @@
+//! Values of a union of 500 balls on all points of a fine grid near whose cells its surface passes, as a meshing asks
+//! for them: ours pruned, fidget's compiler pruned, and the whole formula compiled once.
+
+use crate::fidgets;
+use crate::models::{self, DOMAIN, Model};
+use cpu_time::ProcessTime;
+use fidget::eval::Function;
+use fidget::jit::{JitFunction, JitShape};
+use fidget::render::{RenderHandle, RenderHints};
+use fidget::shape::{ShapeBulkEval, ShapeTracingEval};
+use fidget::types::Interval;
+use ogee::math::{Aabb, Vec3};
+use ogee::sdf::{Field, Points, Tape};
+use std::hint::black_box;
+use std::sync::Arc;
+
+/// Points along a side of the grid.
+const GRID: usize = 256;
+
+/// Points along a side of the blocks that are evaluated at once; each side has the one that suits it best.
+const BLOCKS: [usize; 3] = [8, 16, 32];
+
+pub(crate) fn rows() {
+    let model = models::spheres(500);
+    println!("side,points along a block,seconds,points asked for,million points a second,times fidget's");
+    let ours = best(|block| by_tape(&model, block));
+    let pruned = best(|block| by_fidget(&model, block));
+    let (seconds, count) = whole(&model);
+    let rate = |side: &(usize, f64, usize)| side.2 as f64 / side.1 / 1e6;
+    let plain = count as f64 / seconds / 1e6;
+    for (name, side, against) in [("ogee pruned", &ours, rate(&pruned)), ("fidget pruned", &pruned, rate(&pruned))] {
+        println!("{name},{},{:.4},{},{:.2},{:.2}", side.0, side.1, side.2, rate(side), rate(side) / against);
+    }
+    println!("fidget whole,,{seconds:.4},{count},{plain:.2},{:.2}", plain / rate(&pruned));
+    println!("ogee pruned over fidget whole,,,,,{:.2}", rate(&ours) / plain);
+}
+
+/// The block, seconds and points of the fastest; a point asked for in several blocks counts once, in its own.
+fn best(run: impl Fn(usize) -> usize) -> (usize, f64, usize) {
+    let timed = |block: usize| {
+        let rounds = (0..3).map(|_| {
+            let start = ProcessTime::now();
+            let points = run(block);
+            (start.elapsed().as_secs_f64(), points)
+        });
+        let (seconds, points) = rounds.fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a });
+        (block, seconds, points)
+    };
+    let rate = |side: &(usize, f64, usize)| side.2 as f64 / side.1;
+    BLOCKS.into_iter().map(timed).max_by(|a, b| rate(a).total_cmp(&rate(b))).expect("some")
+}
+
+/// The lower corner of a block's points and their distance; blocks are halves of halves of the domain.
+fn step() -> f64 {
+    DOMAIN.size().x / GRID as f64
+}
+
+/// Coordinates of a block's points, in the middles of the grid's cells.
+fn block_points(low: Vec3, block: usize) -> [Vec<f64>; 3] {
+    let at = |axis: usize, i: usize| low[axis] + step() * (i as f64 + 0.5);
+    let index = |axis: usize, i: usize| [i % block, i / block % block, i / block / block][axis];
+    [0, 1, 2].map(|axis| (0..block * block * block).map(|i| at(axis, index(axis, i))).collect())
+}
+
+fn eighth(cell: Aabb, index: usize) -> Aabb {
+    let middle = cell.center();
+    let corner = Vec3::from_array([0, 1, 2].map(|k| if index >> k & 1 == 0 { cell.min[k] } else { cell.max[k] }));
+    Aabb::of([middle, corner])
+}
+
+fn by_tape(model: &Model, block: usize) -> usize {
+    fn descend(field: &dyn Field, cell: Aabb, block: usize, values: &mut [f64]) -> usize {
+        let range = field.range(cell).expect("a formula");
+        if range.is_inside() || range.is_outside() {
+            return 0;
+        }
+        let pruned: Option<Arc<dyn Field>> = field.within(cell);
+        let field = pruned.as_deref().unwrap_or(field);
+        if cell.size().x <= step() * block as f64 * 1.5 {
+            let [x, y, z] = block_points(cell.min, block);
+            field.values(Points::new(&x, &y, &z), values);
+            black_box(values);
+            return x.len();
+        }
+        (0..8).map(|k| descend(field, eighth(cell, k), block, values)).sum()
+    }
+    let tape: Tape = model.field.expr().compile();
+    descend(&tape, DOMAIN, block, &mut vec![0.0; block * block * block])
+}
+
+struct Fidget {
+    interval: ShapeTracingEval<<JitFunction as Function>::IntervalEval>,
+    slice: ShapeBulkEval<<JitFunction as Function>::FloatSliceEval>,
+    tapes: Vec<<JitFunction as Function>::TapeStorage>,
+    shapes: Vec<<JitFunction as Function>::Storage>,
+    workspace: <JitFunction as Function>::Workspace,
+    block: usize,
+    /// Whether it simplifies where its own mesher does, instead of everywhere.
+    sparing: bool,
+}
+
+fn by_fidget(model: &Model, block: usize) -> usize {
+    // Its mesher's rule for where to simplify was made for deeper trees: the better of both counts.
+    let shape = JitShape::from(fidgets::tree(&model.plain));
+    let run = |sparing: bool| {
+        let mut fidget = Fidget {
+            interval: JitShape::new_interval_eval(),
+            slice: JitShape::new_float_slice_eval(),
+            tapes: Vec::new(),
+            shapes: Vec::new(),
+            workspace: Default::default(),
+            block,
+            sparing,
+        };
+        fidget.descend(&mut RenderHandle::new(shape.clone()), DOMAIN, 0)
+    };
+    run(block == 8)
+}
+
+impl Fidget {
+    fn descend(&mut self, handle: &mut RenderHandle<JitFunction>, cell: Aabb, depth: usize) -> usize {
+        let [x, y, z] = [0, 1, 2].map(|k| Interval::new(cell.min[k] as f32, cell.max[k] as f32));
+        let tape = handle.i_tape(&mut self.tapes);
+        let (range, trace) = self.interval.eval(tape, x, y, z).expect("three coordinates");
+        if range.upper() < 0.0 || range.lower() > 0.0 {
+            return 0;
+        }
+        let simplify = !self.sparing || JitFunction::simplify_tree_during_meshing(depth);
+        let handle = match trace.filter(|_| simplify) {
+            Some(trace) => {
+                handle.simplify(trace, &mut self.workspace, &mut self.shapes, &mut self.tapes)
+            }
+            None => handle,
+        };
+        if cell.size().x <= step() * self.block as f64 * 1.5 {
+            let [x, y, z] = block_points(cell.min, self.block).map(|c| c.iter().map(|&x| x as f32).collect::<Vec<f32>>());
+            let tape = handle.f_tape(&mut self.tapes);
+            black_box(self.slice.eval(tape, &x, &y, &z).expect("three coordinates"));
+            return x.len();
+        }
+        (0..8).map(|k| self.descend(handle, eighth(cell, k), depth + 1)).sum()
+    }
+}
+
+/// Seconds and points of the whole formula on a grid of half as many points a side.
+fn whole(model: &Model) -> (f64, usize) {
+    let shape = JitShape::from(fidgets::tree(&model.plain));
+    let start = ProcessTime::now();
+    let values = black_box(fidgets::grid(&shape, GRID / 2));
+    (start.elapsed().as_secs_f64(), values.len())
+}
