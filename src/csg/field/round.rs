@@ -129,8 +129,12 @@ impl Rounded {
         for k in 0..steps {
             for signs in [0, 1 << b, 1 << c, 1 << b | 1 << c] {
                 let [low, high] = [signs | 1 << axis, signs];
-                let ring =
-                    [names[low][arc(k)], names[low][arc(k + 1)], names[high][arc(k + 1)], names[high][arc(k)]];
+                let ring = [
+                    names[low][arc(k)],
+                    names[low][arc(k + 1)],
+                    names[high][arc(k + 1)],
+                    names[high][arc(k)],
+                ];
                 push_rectangle(mesh, ring, signs.count_ones() == 1);
             }
         }
@@ -259,7 +263,8 @@ impl Turned {
         let share = 0.5 * tolerance;
         // Quarters keep the extents.
         let (sides, around) = (sides_within(size, share)?, sides_within(minor, share)?);
-        let profile = (0..u64::from(around)).map(|k| Vec2::new(major, 0.0) + minor * unit_circle(k, around.into()));
+        let profile =
+            (0..u64::from(around)).map(|k| Vec2::new(major, 0.0) + minor * unit_circle(k, around.into()));
         let error = sagitta(size, sides) + sagitta(minor, around);
         Some(Turned { profile: profile.collect(), closed: true, sides, error })
     }
@@ -281,9 +286,13 @@ impl Turned {
             };
             let x = out(radius - rounding, radius, direction.x);
             let beside = level * (half_height - rounding);
-            Vec2::new(x, if direction.y == level { level * half_height } else { beside + rounding * direction.y })
+            Vec2::new(
+                x,
+                if direction.y == level { level * half_height } else { beside + rounding * direction.y },
+            )
         };
-        let mut profile: Vec<Vec2> = (3 * quarter..=4 * quarter).map(|k| rim(k % (4 * quarter), -1.0)).collect();
+        let mut profile: Vec<Vec2> =
+            (3 * quarter..=4 * quarter).map(|k| rim(k % (4 * quarter), -1.0)).collect();
         // Without a straight part both rims share a ring.
         let first = u64::from(straight == 0.0);
         profile.extend((first..=quarter).map(|k| rim(k, 1.0)));

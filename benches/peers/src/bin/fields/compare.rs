@@ -81,7 +81,10 @@ fn columns(row: &Row, offer: Option<Offer>) -> String {
         return "none gets there,,,,".to_owned();
     };
     let ratio = row.seconds / seconds;
-    format!("{method},{seconds:.5},{ratio:.3},{triangles:.0},{:.3}", row.judgement.triangles as f64 / triangles)
+    format!(
+        "{method},{seconds:.5},{ratio:.3},{triangles:.0},{:.3}",
+        row.judgement.triangles as f64 / triangles
+    )
 }
 
 /// The peer that reaches an error in the least time, by power laws between the neighbouring rows of each.

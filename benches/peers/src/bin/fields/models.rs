@@ -25,16 +25,7 @@ pub(crate) struct Model {
 pub(crate) const DOMAIN: Aabb = Aabb { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
 
 pub(crate) fn all() -> Vec<Model> {
-    vec![
-        sphere(),
-        torus(),
-        drilled_box(),
-        smooth_union(),
-        gyroid_in_sphere(),
-        spheres(500),
-        cone(),
-        plate(),
-    ]
+    vec![sphere(), torus(), drilled_box(), smooth_union(), gyroid_in_sphere(), spheres(500), cone(), plate()]
 }
 
 fn leaf(primitive: Primitive, tolerance: f64) -> Csg {
@@ -58,12 +49,7 @@ fn implicit(primitive: Primitive) -> Implicit {
 }
 
 /// What peers get is what we get, taken apart.
-fn model(
-    name: &'static str,
-    recipe: impl Fn(f64) -> Csg + 'static,
-    field: Implicit,
-    truth: Truth,
-) -> Model {
+fn model(name: &'static str, recipe: impl Fn(f64) -> Csg + 'static, field: Implicit, truth: Truth) -> Model {
     let plain = field.expr().operations().expect("a formula");
     Model { name, recipe: Box::new(recipe), field, plain, truth }
 }
@@ -88,8 +74,7 @@ fn drilled_box() -> Model {
     let (half, rounding, hole) = (Vec3::splat(0.7), 0.15, 0.35);
     let block = Primitive::RoundedCuboid { half, radius: rounding };
     let drill = Primitive::Cylinder { radius: hole, half_height: 0.9, rounding: 0.0 };
-    let turns =
-        [Affine3::IDENTITY, Affine3::from_rotation_x(0.5 * PI), Affine3::from_rotation_y(0.5 * PI)];
+    let turns = [Affine3::IDENTITY, Affine3::from_rotation_x(0.5 * PI), Affine3::from_rotation_y(0.5 * PI)];
     let recipe = move |tolerance| {
         let drills = turns.map(|turn| moved(turn, leaf(drill, tolerance)));
         combined(Op::Difference, [vec![leaf(block, tolerance)], drills.to_vec()].concat())
@@ -110,10 +95,7 @@ fn smooth_union() -> Model {
     let blend = Blend::Quadratic { radius };
     let recipe = move |tolerance| {
         let ball = |(center, radius): (Vec3, f64)| {
-            Arc::new(moved(
-                Affine3::from_translation(center),
-                leaf(Primitive::Sphere { radius }, tolerance),
-            ))
+            Arc::new(moved(Affine3::from_translation(center), leaf(Primitive::Sphere { radius }, tolerance)))
         };
         Csg::Blend { op: Op::Union, blend, tolerance, children: balls.map(ball).to_vec() }
     };
@@ -137,12 +119,10 @@ fn gyroid_in_sphere() -> Model {
     let kind = Periodic::Gyroid;
     let ball = Primitive::Sphere { radius };
     let recipe = move |tolerance| {
-        let wall =
-            FieldShape::Periodic { kind, period, thickness: Some(thickness), bounds: DOMAIN };
+        let wall = FieldShape::Periodic { kind, period, thickness: Some(thickness), bounds: DOMAIN };
         combined(Op::Intersection, vec![body(wall, tolerance), leaf(ball, tolerance)])
     };
-    let wall =
-        implicit(Primitive::Periodic { kind, period }).shell(thickness).expect("a thickness");
+    let wall = implicit(Primitive::Periodic { kind, period }).shell(thickness).expect("a thickness");
     let field = wall.intersection(&implicit(ball));
     let side = |sign| Sheet::Gyroid { turns: TAU / period, sign, half: 0.5 * thickness };
     let truth =
@@ -161,9 +141,7 @@ pub(crate) fn spheres(count: usize) -> Model {
         .collect();
     let shapes: Vec<Implicit> = balls
         .iter()
-        .map(|&(center, radius)| {
-            implicit(Primitive::Sphere { radius }).translate(center).expect("finite")
-        })
+        .map(|&(center, radius)| implicit(Primitive::Sphere { radius }).translate(center).expect("finite"))
         .collect();
     let sheets = balls.iter().map(|&(center, radius)| Sheet::Sphere { center, radius }).collect();
     let recipe = move |tolerance| {
@@ -185,10 +163,8 @@ fn cone() -> Model {
     let side = Expr::norm2(&x, &y) * cosine + (&z - half) * sine;
     let bounds = Aabb { min: Vec3::new(-radius, -radius, -half), max: Vec3::new(radius, radius, half) };
     let field = Implicit::formula(side.max(-z - half), Some(1.0 + 1e-12), bounds);
-    let sheets = vec![
-        Sheet::Cone { cosine, sine, apex: half },
-        Sheet::Plane { normal: Vec3::NEG_Z, offset: half },
-    ];
+    let sheets =
+        vec![Sheet::Cone { cosine, sine, apex: half }, Sheet::Plane { normal: Vec3::NEG_Z, offset: half }];
     let truth = Truth::intersection(sheets)
         .with_corners(vec![half * Vec3::Z])
         .with_volume(PI * radius * radius * 2.0 * half / 3.0);

@@ -10,18 +10,44 @@ use ogee::math::{Aabb, Mat3, Vec3};
 /// A smooth function, negative inside, never steeper than 1.
 #[derive(Clone, Copy)]
 pub(crate) enum Sheet {
-    Sphere { center: Vec3, radius: f64 },
-    Torus { major: f64, minor: f64 },
-    RoundedBox { half: Vec3, radius: f64 },
+    Sphere {
+        center: Vec3,
+        radius: f64,
+    },
+    Torus {
+        major: f64,
+        minor: f64,
+    },
+    RoundedBox {
+        half: Vec3,
+        radius: f64,
+    },
     /// The outside of a cylinder around an axis.
-    Hole { axis: usize, radius: f64 },
-    Plane { normal: Vec3, offset: f64 },
+    Hole {
+        axis: usize,
+        radius: f64,
+    },
+    Plane {
+        normal: Vec3,
+        offset: f64,
+    },
     /// Around the z axis, its apex upwards at this height.
-    Cone { cosine: f64, sine: f64, apex: f64 },
+    Cone {
+        cosine: f64,
+        sine: f64,
+        apex: f64,
+    },
     /// One side of the wall around a gyroid.
-    Gyroid { turns: f64, sign: f64, half: f64 },
+    Gyroid {
+        turns: f64,
+        sign: f64,
+        half: f64,
+    },
     /// Two balls and the quadratic smooth minimum.
-    SmoothPair { balls: [(Vec3, f64); 2], reach: f64 },
+    SmoothPair {
+        balls: [(Vec3, f64); 2],
+        reach: f64,
+    },
 }
 
 impl Sheet {
@@ -110,7 +136,9 @@ impl Truth {
 
     /// The sheets that a point can be near to or beyond.
     fn around(&self, p: Vec3) -> &[u32] {
-        let cell = ((p - DOMAIN.min) * (0.5 * SIDE as f64)).floor().clamp(Vec3::ZERO, Vec3::splat(SIDE as f64 - 1.0));
+        let cell = ((p - DOMAIN.min) * (0.5 * SIDE as f64))
+            .floor()
+            .clamp(Vec3::ZERO, Vec3::splat(SIDE as f64 - 1.0));
         let [x, y, z] = cell.to_array().map(|c| c as usize);
         &self.near[x + SIDE * (y + SIDE * z)]
     }
@@ -204,9 +232,7 @@ impl Truth {
                 let determinant = uu * vv - uv * uv;
                 ((uv * b - vv * a) * u + (uv * a - uu * b) * v) / determinant
             }
-            [(a, u), (b, v), (c, w)] => {
-                Mat3::from_cols(u, v, w).transpose().inverse() * -Vec3::new(a, b, c)
-            }
+            [(a, u), (b, v), (c, w)] => Mat3::from_cols(u, v, w).transpose().inverse() * -Vec3::new(a, b, c),
             _ => return None,
         };
         (step.is_finite() && step.length() < REACH).then_some(step)
@@ -252,7 +278,8 @@ impl Truth {
             self.around(p).iter().copied().filter(|&k| self.beyond(k, p).abs() < step).collect();
         for (i, &a) in close.iter().enumerate() {
             for &b in &close[..i] {
-                let crease = self.onto(&[a, b], p).filter(|&q| q.distance(p) < 2.0 * step && self.is_surface(q));
+                let crease =
+                    self.onto(&[a, b], p).filter(|&q| q.distance(p) < 2.0 * step && self.is_surface(q));
                 creases.extend(crease);
             }
         }

@@ -30,8 +30,7 @@ pub(crate) enum Way {
 }
 
 impl Way {
-    pub(crate) const ALL: [Way; 5] =
-        [Way::Recipe, Way::Field, Way::Fidget, Way::SurfaceNets, Way::Grid];
+    pub(crate) const ALL: [Way; 5] = [Way::Recipe, Way::Field, Way::Fidget, Way::SurfaceNets, Way::Grid];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
