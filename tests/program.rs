@@ -359,3 +359,23 @@ fn builtins_are_listed() {
     assert!(one.lines().count() == 3 && one.contains("cube("), "{one}");
     bench.fails("builtins cubes", 1, &["cubes"]);
 }
+
+/// What the README shows works as it stands there.
+#[test]
+fn scripts_of_the_readme() {
+    let readme = fs::read_to_string("README.md").expect("the README");
+    let blocks: Vec<&str> = readme
+        .split("```openscad\n")
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap_or_default())
+        .collect();
+    assert_eq!(blocks.len(), 5);
+    let bench = Bench::new();
+    bench.put("fixtures/patches/teapot.bpt", fs::read("fixtures/patches/teapot.bpt").expect("the teapot"));
+    for (i, block) in blocks.into_iter().enumerate() {
+        let summary = bench.put("block.scad", block).run("build block.scad --summary json").json();
+        assert_eq!(summary["closed"], true, "block {i}: {summary}");
+        assert_eq!(summary["warnings"], 0, "block {i}: {summary}");
+        assert!(summary["volume"].as_f64().is_some_and(|volume| volume > 1.0), "block {i}: {summary}");
+    }
+}

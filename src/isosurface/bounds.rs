@@ -8,8 +8,18 @@ use std::sync::Arc;
 /// Half sides of boxes that are tried, from 2^-20 to 2^60.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -20..=60;
 
-/// A box outside of which the field is proven not to be negative: the field's own, or found by ranges over the six
-/// half-spaces around growing cubes. Empty when there is no inside at all.
+/// Cells looked at in a shell between two cubes before it is taken for one that may hold a part of the inside.
+const CELLS_IN_SHELL: usize = 4096;
+
+/// Times that a cell of a shell is divided.
+const SHELL_DEPTH: u32 = 8;
+
+/// A box outside of which the field is proven not to be negative: the field's own, or found by ranges. Empty when there
+/// is no inside at all.
+///
+/// Ranges over the six half-spaces around a cube prove it for all of space. Where they tell too little, since two large
+/// numbers may cancel, the shells between cubes of twice the size each are divided, and it is proven for coordinates
+/// up to 2^60.
 ///
 /// # Errors
 /// [`IsoError::Unbounded`] when neither tells.
@@ -24,24 +34,61 @@ pub fn find_bounds(field: &dyn Field) -> Result<Aabb, IsoError> {
     if is_free(range) {
         return Ok(Aabb::EMPTY);
     }
-    let half_spaces_free = |half: f64| {
-        (0..6).all(|side: usize| {
-            let mut beyond = everywhere;
-            if side < 3 {
-                beyond.min[side] = half;
-            } else {
-                beyond.max[side - 3] = -half;
-            }
-            field.range(beyond).is_some_and(is_free)
-        })
-    };
-    for exponent in EXPONENTS.step_by(2) {
-        let half = crate::math::pow(2.0, f64::from(exponent));
-        if half_spaces_free(half) {
-            return Ok(Aabb { min: Vec3::splat(-half), max: Vec3::splat(half) });
+    let free = EXPONENTS.step_by(2).map(size).find(|&half| half_spaces_are_free(field, half));
+    let found = free.or_else(|| least_after_free_shells(field));
+    found.map(cube).ok_or(IsoError::Unbounded { searched: size(*EXPONENTS.end()) })
+}
+
+fn size(exponent: i32) -> f64 {
+    crate::math::pow(2.0, f64::from(exponent))
+}
+
+fn cube(half: f64) -> Aabb {
+    Aabb { min: Vec3::splat(-half), max: Vec3::splat(half) }
+}
+
+/// Whether nothing is inside farther than `half` from the origin along an axis.
+fn half_spaces_are_free(field: &dyn Field, half: f64) -> bool {
+    (0..6).all(|side: usize| {
+        let mut beyond = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+        if side < 3 {
+            beyond.min[side] = half;
+        } else {
+            beyond.max[side - 3] = -half;
         }
+        field.range(beyond).is_some_and(is_free)
+    })
+}
+
+/// Half the side of the least cube with free shells around it, each twice as large as the one before.
+fn least_after_free_shells(field: &dyn Field) -> Option<f64> {
+    let halves = EXPONENTS.rev().skip(1).map(size);
+    halves.take_while(|&half| shell_is_free(field, half)).last()
+}
+
+/// Whether nothing is inside between the cube of half a side `half` and the one twice as large.
+fn shell_is_free(field: &dyn Field, half: f64) -> bool {
+    let mut left = CELLS_IN_SHELL;
+    let inner = [-half, half];
+    (0..64).all(|i: usize| {
+        let at = [i % 4, i / 4 % 4, i / 16];
+        let min = Vec3::from_array(at.map(|k| (k as f64 - 2.0) * half));
+        let cell = Aabb { min, max: min + half };
+        let is_inner = (0..3).all(|axis| inner[0] <= cell.min[axis] && cell.max[axis] <= inner[1]);
+        is_inner || cell_is_free(field, cell, SHELL_DEPTH, &mut left)
+    })
+}
+
+fn cell_is_free(field: &dyn Field, cell: Aabb, depth: u32, left: &mut usize) -> bool {
+    *left = left.saturating_sub(1);
+    if field.range(cell).is_some_and(is_free) {
+        return true;
     }
-    Err(IsoError::Unbounded { searched: crate::math::pow(2.0, f64::from(*EXPONENTS.end())) })
+    let middle = cell.center();
+    // What is inside in the middle will not become free.
+    let may_be_free = depth > 0 && *left > 0 && field.value(middle) >= 0.0;
+    let eighths = corners_of(cell).map(|corner| Aabb::of([middle, corner]));
+    may_be_free && eighths.into_iter().all(|eighth| cell_is_free(field, eighth, depth - 1, left))
 }
 
 /// A box that can be divided.
@@ -50,9 +97,9 @@ pub(super) fn checked(bounds: Aabb) -> Result<Aabb, IsoError> {
     if sound && bounds.size().is_finite() { Ok(bounds) } else { Err(IsoError::BadBounds(bounds)) }
 }
 
-/// Nothing inside there.
+/// Nothing inside there: no value is negative, if there are values.
 fn is_free(range: Range) -> bool {
-    range.is_outside() || range.is_undefined()
+    range.is_undefined() || range.interval.lo >= 0.0
 }
 
 /// What is left of a box, and what was seen on the way.
@@ -142,6 +189,33 @@ mod tests {
             let bounds = tightened(&tape, find_bounds(&tape).unwrap(), true).bounds;
             assert!(bounds.min.x < middle - radius && bounds.max.x > middle + radius, "{bounds:?}");
             assert!(bounds.size().max_element() < 2.6 * radius, "{bounds:?}");
+        }
+    }
+
+    #[test]
+    fn boxes_of_what_waves_and_leans() {
+        let [x, y, z] = Expr::axes();
+        let norm = || (x.square() + y.square() + z.square()).sqrt();
+        let wave = || (&x * 3.0).sin() * (&y * 3.0).sin();
+        let shapes = [
+            norm() - 8.0 - (&x * 3.0).sin(),
+            norm() - 8.0 - wave(),
+            norm() - 8.0 - &x / 3.0,
+            norm() - 8.0 - &x * 0.9,
+            norm() - 8.0 - (&x * &y).min(1.0).max(-1.0),
+            (norm() - 8.0).square() - wave().abs(),
+        ];
+        for shape in shapes {
+            let tape = shape.compile();
+            let bounds = find_bounds(&tape).unwrap();
+            assert!(bounds.size().max_element() < 600.0, "{bounds:?}");
+            for k in 0..1000 {
+                let turn = f64::from(k);
+                let to =
+                    Vec3::new(crate::math::cos(turn), crate::math::sin(turn), crate::math::sin(7.3 * turn));
+                let outside = to * (300.0 + turn * turn) / to.abs().max_element();
+                assert!(tape.value(outside) >= 0.0);
+            }
         }
     }
 
