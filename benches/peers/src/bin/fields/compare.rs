@@ -29,7 +29,7 @@ impl fmt::Display for Row {
         let creases = j.creases.map_or(String::new(), |error| format!("{error:.2e}"));
         write!(
             f,
-            "{model},{method},{level},{},{:.2e},{:.2e},{creases},{:.1e},{seconds:.5},{:.1},{},{},{}",
+            "{model},{method},{level},{},{:.2e},{:.2e},{creases},{:.1e},{seconds:.6},{:.1},{},{},{}",
             j.triangles,
             j.from_mesh,
             j.from_surface,
@@ -62,10 +62,10 @@ pub(crate) fn print(rows: &[Row]) {
         let equal = columns(row, fastest(rows, row.model, error));
         let asked = fastest(rows, row.model, row.level).map(|offer| {
             let ratios = [row.seconds / offer.seconds, row.judgement.triangles as f64 / offer.triangles];
-            format!("{},{:.5},{:.3},{:.3}", offer.method, offer.seconds, ratios[0], ratios[1])
+            format!("{},{:.6},{:.5},{:.5}", offer.method, offer.seconds, ratios[0], ratios[1])
         });
         println!(
-            "{},{},{},{error:.2e},{:.5},{},{equal},{}",
+            "{},{},{},{error:.2e},{:.6},{},{equal},{}",
             row.model,
             row.method,
             row.level,
@@ -82,7 +82,7 @@ fn columns(row: &Row, offer: Option<Offer>) -> String {
     };
     let ratio = row.seconds / seconds;
     format!(
-        "{method},{seconds:.5},{ratio:.3},{triangles:.0},{:.3}",
+        "{method},{seconds:.6},{ratio:.5},{triangles:.0},{:.5}",
         row.judgement.triangles as f64 / triangles
     )
 }
