@@ -135,6 +135,28 @@ fn what_has_plane_faces_is_not_searched_for() {
 }
 
 #[test]
+fn what_is_round_is_not_searched_for() {
+    let cases = [
+        ("sdf_sphere(2, tolerance = 1e-3);", ball(2.0)),
+        ("sdf_ellipsoid([1, 2, 3], tolerance = 1e-3);", 6.0 * ball(1.0)),
+        ("sdf_capsule(h = 3, r = 1, tolerance = 1e-3);", 3.0 * PI + ball(1.0)),
+        ("sdf_torus(2, 0.5, tolerance = 1e-3);", PI * PI),
+        ("sdf_rounded_box(4, r = 1, tolerance = 1e-3);", around_cube(2.0, 1.0)),
+    ];
+    for (text, expected) in cases {
+        let built = built(text);
+        let [meshing] = &built.report.meshings[..] else { panic!("{text}: one meshing") };
+        let report = &meshing.report;
+        assert!(
+            report.cells == 0 && report.certified.is_some_and(|bound| bound <= 1e-3),
+            "{text}: {report:?}"
+        );
+        let volume = solid(text).volume();
+        assert!(volume < expected && volume > (1.0 - 2e-3) * expected, "{text}: {volume} for {expected}");
+    }
+}
+
+#[test]
 fn edges_of_primitives_are_rounded() {
     check_volumes(&[
         ("sdf_rounded_box(4, r = 1, tolerance = 0.05);", around_cube(2.0, 1.0)),

@@ -102,7 +102,9 @@ impl Teller<'_, '_> {
             Csg::Body(Body::Surface(surface)) => format!("{of}: mesh within {}", surface.tolerance),
             Csg::Body(Body::Field(field)) => match field.direct() {
                 None => format!("{of}: field, meshed within {}", field.tolerance),
-                Some(Direct::Rings { .. }) => format!("{of}: mesh within {}", field.tolerance),
+                Some(Direct::Rings { .. } | Direct::Rounded(_) | Direct::Turned(_)) => {
+                    format!("{of}: mesh within {}", field.tolerance)
+                }
                 Some(_) => format!("{of}: mesh"),
             },
             Csg::Blend { tolerance, .. } | Csg::Offset { tolerance, .. } => {

@@ -390,7 +390,7 @@ impl Op {
 
 /// A row of a matrix with a vector, plus a constant; what is zero is left out, so that it cannot make NaN of infinity.
 #[inline(always)]
-fn linear<T: Real>(row: &[f64; 4], args: [T; 3]) -> T {
+pub(super) fn linear<T: Real>(row: &[f64; 4], args: [T; 3]) -> T {
     let mut sum: Option<T> = None;
     for (&factor, x) in row.iter().zip(args) {
         if factor != 0.0 {

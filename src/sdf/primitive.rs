@@ -251,8 +251,8 @@ impl Primitive {
 /// How far a point is beyond each pair of faces of a box.
 #[inline(always)]
 fn beyond<T: Real>(p: [T; 3], half: Vec3) -> [T; 3] {
-    let [x, y, z] = p.map(T::abs);
-    [x - T::of(half.x), y - T::of(half.y), z - T::of(half.z)]
+    let [x, y, z] = p;
+    [x.abs() - T::of(half.x), y.abs() - T::of(half.y), z.abs() - T::of(half.z)]
 }
 
 /// The distance from |x| + |y| + |z| = radius.

@@ -73,6 +73,7 @@ pub(super) trait Real:
     }
 
     /// The Euclidean norm; its derivatives at zero are taken for zero.
+    #[inline(always)]
     fn norm<const N: usize>(v: [Self; N]) -> Self {
         sum_of_squares(v).sqrt()
     }
@@ -85,10 +86,17 @@ pub(super) trait Real:
 
     /// The exact distance from the orthant where all `q` are negative or zero: Euclidean outside of it, minus the least
     /// distance to a face inside.
+    #[inline(always)]
     fn corner<const N: usize>(q: [Self; N]) -> Self {
         let zero = Self::of(0.0);
-        let inside = q.into_iter().reduce(Self::max).unwrap_or(zero).min(zero);
-        Self::norm(q.map(|x| x.max(zero))) + inside
+        let (mut most, mut outside) = (q[0], q);
+        for &x in &q[1..] {
+            most = most.max(x);
+        }
+        for x in &mut outside {
+            *x = x.max(zero);
+        }
+        Self::norm(outside) + most.min(zero)
     }
 
     /// The partial derivatives of [`Real::corner`]; where two faces inside are equally near, those of the first.
@@ -104,9 +112,14 @@ pub(super) trait Real:
     }
 }
 
-/// The sum of the squares, from the first to the last.
+/// The sum of the squares, from the first to the last. Plain loops: arrays of lanes are too large for `map` to be inlined.
+#[inline(always)]
 pub(super) fn sum_of_squares<T: Real, const N: usize>(v: [T; N]) -> T {
-    v.map(T::square).into_iter().reduce(|sum, x| sum + x).unwrap_or(T::of(0.0))
+    let mut sum = v[0].square();
+    for x in &v[1..] {
+        sum = sum + x.square();
+    }
+    sum
 }
 
 impl Real for f64 {
@@ -197,14 +210,13 @@ impl Real for f64 {
 
     #[inline]
     fn min(self, other: f64) -> f64 {
-        let less = if self < other { self } else { other };
-        if self.is_nan() { self } else { less }
+        // One choice without a branch becomes vector instructions.
+        if (self < other) | self.is_nan() { self } else { other }
     }
 
     #[inline]
     fn max(self, other: f64) -> f64 {
-        let more = if self > other { self } else { other };
-        if self.is_nan() { self } else { more }
+        if (self > other) | self.is_nan() { self } else { other }
     }
 
     #[inline]

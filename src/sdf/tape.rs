@@ -1,9 +1,10 @@
 use super::dual::Dual;
-use super::expr::{Expr, Op};
+use super::expr::{Expr, Op, linear};
 use super::field::{Curvature, Field, Points, Slopes};
 use super::graph::{Graph, Step};
 use super::number::{Number, Second};
 use super::op::{Binary, Unary};
+use super::primitive::Primitive;
 use super::prune;
 use super::real::{LANES, Lanes, Real};
 use super::{Range, registers};
@@ -203,6 +204,22 @@ impl Sweep<'_> {
         }
     }
 
+    /// Rows of one factor, as those of shapes that are moved, without asking in the loop which.
+    fn linear(mut self, row: &[f64; 4]) {
+        let mut used = (0..3).filter(|&axis| row[axis] != 0.0);
+        let (Some(axis), None) = (used.next(), used.next()) else {
+            return self.each(|args| linear(row, args));
+        };
+        self.args[0] = self.args[axis];
+        let (factor, shift) = (Lanes::of(row[axis]), Lanes::of(row[3]));
+        match (row[axis] == 1.0, row[3] == 0.0) {
+            (true, true) => self.each1(|x| x),
+            (true, false) => self.each1(|x| x + shift),
+            (false, true) => self.each1(|x| factor * x),
+            (false, false) => self.each1(|x| factor * x + shift),
+        }
+    }
+
     /// The frequent operations have loops of their own, which become vector instructions.
     fn step(self, step: &Step, axes: &[[Lanes; GROUPS]; 3]) {
         match &step.op {
@@ -219,6 +236,13 @@ impl Sweep<'_> {
             Op::Binary(Binary::Min) => self.each2(Real::min),
             Op::Binary(Binary::Max) => self.each2(Real::max),
             Op::Binary(op) => self.each2(|a, b| op.apply(a, b)),
+            Op::Linear(row) => self.linear(row),
+            &Op::Primitive(Primitive::Sphere { radius }) => {
+                self.each(|args| Primitive::Sphere { radius }.apply(args));
+            }
+            &Op::Primitive(Primitive::Cuboid { half }) => {
+                self.each(|args| Primitive::Cuboid { half }.apply(args));
+            }
             Op::Primitive(primitive) => self.each(|args| primitive.apply(args)),
             Op::Field(field) => self.each(|args| Lanes::of_field(&**field, args)),
             op => self.each(|args| op.apply(args, usize::from(step.arity))),

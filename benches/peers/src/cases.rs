@@ -7,6 +7,9 @@ use crate::specimens::{self, Expected, Specimen};
 use ogee::boolean::{Op, Tree};
 use ogee::math::{Aabb, Vec3};
 use ogee::mesh::Mesh;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::{fs, io};
 
 /// A case by name; its operands are made when it is run.
 pub(crate) struct Case {
@@ -38,6 +41,12 @@ impl Case {
 
     fn imported(self) -> Case {
         Case { imported: true, ..self }
+    }
+
+    /// Writes the case into a folder; the tree as lists, an operand's number or an operation and its operands.
+    pub(crate) fn write(&self, folder: &Path, tree: &Tree) -> io::Result<()> {
+        let value = json!({ "imported": self.imported, "tree": tree_value(tree) });
+        fs::write(folder.join("case.json"), value.to_string())
     }
 
     pub(crate) fn work(&self) -> Work {
@@ -148,4 +157,16 @@ fn terrain() -> Work {
     operands.extend(domes);
     let chain = |sum, next| Tree::Node(Op::Difference, vec![sum, Tree::Leaf(next)]);
     Work { tree: (1..operands.len()).fold(Tree::Leaf(0), chain), operands, known: ONE_PIECE }
+}
+
+fn tree_value(tree: &Tree) -> Value {
+    match tree {
+        Tree::Leaf(index) => json!(index),
+        Tree::Node(op, children) => {
+            let mut list = vec![json!(format!("{op:?}"))];
+            list.extend(children.iter().map(tree_value));
+            Value::Array(list)
+        }
+        Tree::AtLeast(..) => unreachable!("no case has one: the peer has no such operation"),
+    }
 }

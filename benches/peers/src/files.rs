@@ -1,10 +1,7 @@
 //! What the processes hand to each other.
 
-use crate::cases::Case;
-use ogee::boolean::Tree;
 use ogee::math::Vec3;
 use ogee::mesh::Mesh;
-use serde_json::{Value, json};
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
@@ -48,22 +45,4 @@ pub(crate) fn read_meshes(path: &Path) -> io::Result<Vec<Mesh>> {
         all.push(Mesh::new(positions, indices.as_chunks().0.to_vec()));
     }
     Ok(all)
-}
-
-/// Writes the case into its folder; the tree as lists, an operand's number or an operation and its operands.
-pub(crate) fn write_case(folder: &Path, case: &Case, tree: &Tree) -> io::Result<()> {
-    let value = json!({ "imported": case.imported, "tree": tree_value(tree) });
-    fs::write(folder.join("case.json"), value.to_string())
-}
-
-fn tree_value(tree: &Tree) -> Value {
-    match tree {
-        Tree::Leaf(index) => json!(index),
-        Tree::Node(op, children) => {
-            let mut list = vec![json!(format!("{op:?}"))];
-            list.extend(children.iter().map(tree_value));
-            Value::Array(list)
-        }
-        Tree::AtLeast(..) => unreachable!("no case has one: the peer has no such operation"),
-    }
 }

@@ -117,7 +117,7 @@ fn measure(case: &Case, options: &Options, python: &Path) -> Result<String, Box<
     fs::create_dir_all(&folder)?;
     let work = case.work();
     files::write_meshes(&folder.join("operands.bin"), &work.operands)?;
-    files::write_case(&folder, case, &work.tree)?;
+    case.write(&folder, &work.tree)?;
     let triangles: usize = work.operands.iter().map(|mesh| mesh.triangles.len()).sum();
     drop(work.operands);
 

@@ -1,5 +1,7 @@
-//! Fields that need no meshing: what has plane faces, or rings of them, is made as it is.
+//! Fields that need no search: what has plane faces, or rings of them, is made as it is; round bodies by their form.
 
+use super::make::COARSEST;
+use super::round::{Rounded, Turned};
 use super::{FieldBody, FieldShape};
 use crate::csg::build::BuildError;
 use crate::hull::convex_hull;
@@ -16,7 +18,12 @@ pub(in crate::csg) enum Direct {
     Cuboid { half: Vec3 },
     Octahedron { radius: f64 },
     Rings { radii: [f64; 2], half_height: f64, sides: u32 },
+    Rounded(Rounded),
+    Turned(Turned),
 }
+
+/// Finer tolerances than this part of the size are for nobody to keep.
+const FINEST: f64 = 1.0 / (1_u64 << 28) as f64;
 
 impl FieldBody {
     /// What a field is that needs no meshing when it stands alone; round ones have as many sides as the tolerance
@@ -31,10 +38,39 @@ impl FieldBody {
             FieldShape::Primitive(Primitive::Cylinder { radius, half_height, rounding: 0.0 }) => {
                 rings([radius; 2], half_height)
             }
+            FieldShape::Primitive(primitive) => self.round(primitive),
             FieldShape::Frustum { radii, half_height } => rings(radii, half_height),
             FieldShape::Prism { sides, radius, half_height } => {
                 Some(Direct::Rings { radii: [radius; 2], half_height, sides })
             }
+            _ => None,
+        }
+    }
+
+    /// A round body, where the tolerance is neither too fine nor makes too many triangles.
+    fn round(&self, primitive: Primitive) -> Option<Direct> {
+        let size = 2.0 * primitive.half_size().max_element();
+        let tolerance = self.tolerance.min(COARSEST * size);
+        if !(size.is_finite() && tolerance >= FINEST * size) {
+            return None;
+        }
+        let half = primitive.half_size();
+        let around = |core: Vec3, radius: f64| Rounded::around(core, half, radius, tolerance);
+        match primitive {
+            Primitive::Sphere { radius } => around(Vec3::ZERO, radius).map(Direct::Rounded),
+            Primitive::Ellipsoid { radii } => Rounded::ellipsoid(radii, tolerance).map(Direct::Rounded),
+            Primitive::Capsule { half_length, radius } => {
+                around(half_length * Vec3::Z, radius).map(Direct::Rounded)
+            }
+            Primitive::RoundedCuboid { half, radius: 0.0 } => Some(Direct::Cuboid { half }),
+            Primitive::RoundedCuboid { half, radius } => around(half - radius, radius).map(Direct::Rounded),
+            Primitive::Cylinder { radius, half_height, rounding } if rounding == radius => {
+                around((half_height - radius) * Vec3::Z, radius).map(Direct::Rounded)
+            }
+            Primitive::Cylinder { radius, half_height, rounding } => {
+                Turned::cylinder(radius, half_height, rounding, tolerance).map(Direct::Turned)
+            }
+            Primitive::Torus { major, minor } => Turned::ring(major, minor, tolerance).map(Direct::Turned),
             _ => None,
         }
     }
@@ -54,19 +90,32 @@ impl Direct {
             Direct::Cuboid { .. } => 12,
             Direct::Octahedron { .. } => 8,
             Direct::Rings { radii, sides, .. } => mesh::frustum_triangles(*radii, *sides),
+            Direct::Rounded(body) => body.triangles(),
+            Direct::Turned(body) => body.triangles(),
+        }
+    }
+
+    /// How far the mesh of a round body is from it, at most; `None` where nothing was round.
+    pub(super) fn error(&self) -> Option<f64> {
+        match self {
+            Direct::Rounded(body) => Some(body.error),
+            Direct::Turned(body) => Some(body.error),
+            _ => None,
         }
     }
 
     pub(super) fn solid(&self) -> Result<Solid, BuildError> {
-        Ok(match *self {
-            Direct::Cuboid { half } => mesh::cuboid(-half, half),
-            Direct::Octahedron { radius } => {
+        Ok(match self {
+            &Direct::Cuboid { half } => mesh::cuboid(-half, half),
+            &Direct::Octahedron { radius } => {
                 let corners = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| [radius * axis, -radius * axis]);
                 convex_hull(corners.as_flattened())?
             }
-            Direct::Rings { radii, half_height, sides } => {
+            &Direct::Rings { radii, half_height, sides } => {
                 mesh::frustum([-half_height, half_height], radii, sides)?
             }
+            Direct::Rounded(body) => body.solid(),
+            Direct::Turned(body) => body.solid(),
         })
     }
 }

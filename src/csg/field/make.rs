@@ -6,7 +6,7 @@ use crate::csg::build::{BuildError, Stage};
 use crate::csg::plan::{self as solids, Spot};
 use crate::csg::solve::{Leaf, Solver};
 use crate::csg::{Csg, FieldBody};
-use crate::isosurface::{self, Meshed, Options};
+use crate::isosurface::{self, Meshed, Options, Places};
 use crate::math::{Aabb, Affine3, Vec3};
 use crate::mesh::Solid;
 use crate::sdf::{Implicit, greatest_stretch};
@@ -36,7 +36,7 @@ const MOST_CELLS: u64 = 4_000_000;
 const MOST_EDGES: usize = 200;
 
 /// Largest tolerance as a part of the size of the shape.
-const COARSEST: f64 = 1.0 / 16.0;
+pub(super) const COARSEST: f64 = 1.0 / 16.0;
 
 /// A mesh has about so many tetrahedra a triangle, at most.
 const CELLS_A_TRIANGLE: u64 = 16;
@@ -46,7 +46,11 @@ impl Solver<'_, '_> {
     pub(in crate::csg) fn field_leaf(&mut self, node: NodeId, body: &FieldBody) -> Result<Leaf, BuildError> {
         if let Some(direct) = body.direct() {
             self.check_limit(direct.triangles())?;
-            return Ok(Leaf::of(direct.solid()?));
+            let solid = direct.solid()?;
+            if let Some(error) = direct.error() {
+                self.note_round(node, body, &solid, error);
+            }
+            return Ok(Leaf::of(solid));
         }
         let field = body.implicit()?;
         let (bounds, cut) = (body.bounds(), body.cut());
@@ -55,6 +59,24 @@ impl Solver<'_, '_> {
         }
         let solid = self.meshed(node, &field, cut.unwrap_or(bounds), cut.is_some(), [body.tolerance, 0.0])?;
         Ok(Leaf::of(solid))
+    }
+
+    /// Reports a round body that was made without a search.
+    fn note_round(&mut self, node: NodeId, body: &FieldBody, solid: &Solid, error: f64) {
+        let report = isosurface::Report {
+            bounds: body.bounds(),
+            capped: 0,
+            certified: Some(error),
+            measured: error,
+            cells: 0,
+            visited: 0,
+            unproven: Places::default(),
+            undefined: Places::default(),
+            jumps: Places::default(),
+            unsigned: Places::default(),
+        };
+        let error = body.tolerance * self.stretch_of(node);
+        self.report.meshings.push(Meshing { error, triangles: solid.triangles().len(), report });
     }
 
     /// The mesh of a smooth boolean or an offset.

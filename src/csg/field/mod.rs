@@ -10,6 +10,7 @@ mod make;
 pub(super) mod plan;
 pub(super) mod print;
 pub(super) mod reach;
+mod round;
 
 pub(super) use direct::Direct;
 pub use leaf::{FieldBody, FieldShape, Formula};
