@@ -430,3 +430,63 @@ fn wrong_input_is_an_error() {
         Err(IsoError::Unbounded { .. })
     ));
 }
+
+/// A field that must not be asked for anything outside of the cell that it was pruned for.
+struct Fenced {
+    ball: Tape,
+    fence: Aabb,
+    cost: usize,
+}
+
+impl Fenced {
+    fn check(&self, cell: Aabb) {
+        let slack = 1e-12;
+        let held =
+            (cell.min + slack).cmpge(self.fence.min).all() && (cell.max - slack).cmple(self.fence.max).all();
+        assert!(held, "{cell:?} is not in {:?}", self.fence);
+    }
+}
+
+impl Field for Fenced {
+    fn value(&self, p: Vec3) -> f64 {
+        self.check(Aabb::of([p]));
+        self.ball.value(p)
+    }
+
+    fn gradient(&self, p: Vec3) -> (f64, Vec3) {
+        self.check(Aabb::of([p]));
+        self.ball.gradient(p)
+    }
+
+    fn range(&self, cell: Aabb) -> Option<ogee::sdf::Range> {
+        self.check(cell);
+        self.ball.range(cell)
+    }
+
+    fn slopes(&self, cell: Aabb) -> Option<ogee::sdf::Slopes> {
+        self.check(cell);
+        self.ball.slopes(cell)
+    }
+
+    fn curvature(&self, cell: Aabb) -> Option<ogee::sdf::Curvature> {
+        self.check(cell);
+        self.ball.curvature(cell)
+    }
+
+    fn within(&self, cell: Aabb) -> Option<std::sync::Arc<dyn Field>> {
+        self.check(cell);
+        Some(std::sync::Arc::new(Fenced { ball: self.ball.clone(), fence: cell, cost: self.cost / 2 }))
+    }
+
+    fn cost(&self) -> usize {
+        self.cost
+    }
+}
+
+#[test]
+fn pruned_fields_are_not_used_beyond_their_cells() {
+    let everywhere = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+    let fenced = Fenced { ball: formula(ball), fence: everywhere, cost: 1 << 20 };
+    let report = meshed(&fenced, &in_block(0.02), "fenced").report;
+    assert_eq!(report.certified, Some(0.02));
+}

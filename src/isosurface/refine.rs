@@ -20,6 +20,9 @@ const CHEAP: usize = 16;
 /// Samples must be within this part of the tolerance; the greatest error lies between them.
 const SAMPLED: f64 = 0.75;
 
+/// Proofs and samples look so many tolerances beyond a tetrahedron: what stands for the field in it must do so there.
+const AROUND: f64 = 1.001;
+
 /// Root cells along the longest side of the box.
 const ROOTS: usize = 6;
 
@@ -251,6 +254,8 @@ impl<'f> Refinement<'f> {
         }
         if first.state == State::Open && self.ranged {
             if tetrahedron.generation.is_multiple_of(3) && field.cost() > CHEAP {
+                let around = AROUND * self.sizes.tolerance;
+                let cell = Aabb { min: cell.min - around, max: cell.max + around };
                 // A little less is not worth the memory.
                 first.pruned = field.within(cell).filter(|pruned| 4 * pruned.cost() < 3 * field.cost());
             }
