@@ -244,6 +244,28 @@ fn caps_that_enclose_nothing_are_an_error() {
 }
 
 /// The largest of a measure over 28 points of every triangle.
+/// Profiles that reach the middle of their path and beyond fold the surface; they once were halved without end, or cut
+/// into triangles without any width.
+#[test]
+fn sweeps_that_fold_are_followed() {
+    let ring =
+        |step: u32, radius: f64| format!("[for (a = [0:{step}:359]) [{radius} * cos(a), {radius} * sin(a)]]");
+    let sweep = |path: &str, profile: &str, rest: &str| {
+        solid(&format!(
+            "sweep([for (p = {path}) [p.x, p.y, 0]], closed = true, profile = {profile}, {rest});"
+        ))
+    };
+    for (path, profile, rest) in [
+        (ring(90, 5.0), ring(120, 2.5), "tolerance = 0.05, twist = 90, kind = \"catmull-rom\""),
+        (ring(90, 5.0), ring(45, 5.15), "tolerance = 0.05"),
+        (ring(60, 5.0), ring(45, 5.0), "tolerance = 0.1, twist = 90, kind = \"catmull-rom\""),
+    ] {
+        let solid = sweep(&path, &profile, rest);
+        let reach = largest(&solid, |p| p.length());
+        assert!(solid.volume() > 100.0 && reach > 7.4 && reach < 12.0, "{path} {profile} {rest}: {reach}");
+    }
+}
+
 fn largest(solid: &Solid, measure: impl Fn(ogee::math::Vec3) -> f64) -> f64 {
     let mesh = solid.mesh();
     let mut most: f64 = 0.0;

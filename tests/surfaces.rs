@@ -466,15 +466,28 @@ fn patch_of(numbers: &mut Numbers, index: u64) -> (Patch, f64, f64) {
 }
 
 #[test]
-#[allow(clippy::print_stdout, reason = "a campaign says what it found")]
 fn random_patches_stay_within_their_tolerance() {
-    let mut numbers = Numbers(number_of("OGEE_SEED", 8));
+    let (seed, count) = (number_of("OGEE_SEED", 8), number_of("OGEE_PATCHES", 30));
+    patches_stay_within_their_tolerance(seed, count, &[Guarantee::Proven, Guarantee::Measured]);
+}
+
+/// Patches of these seeds have poles at the ends of rows, in line with them, and folds: some were not finished in minutes.
+#[test]
+fn patches_with_poles_and_folds_are_followed() {
+    for seed in [11, 14, 16, 19, 20, 21] {
+        patches_stay_within_their_tolerance(seed, 12, &[Guarantee::Proven]);
+    }
+}
+
+#[allow(clippy::print_stdout, reason = "a campaign says what it found")]
+fn patches_stay_within_their_tolerance(seed: u64, count: u64, guarantees: &[Guarantee]) {
+    let mut numbers = Numbers(seed);
     let (mut triangles, mut worst) = ([0; 2], [0.0_f64; 2]);
-    for index in 0..number_of("OGEE_PATCHES", 30) {
+    for index in 0..count {
         let (patch, rough, scale) = patch_of(&mut numbers, index);
         let tolerance = [0.02, 0.05][(index % 2) as usize] * (1.0 + rough);
         let scaled = patch.map(|p| p * scale).unwrap();
-        for (k, guarantee) in [Guarantee::Proven, Guarantee::Measured].into_iter().enumerate() {
+        for (k, guarantee) in guarantees.iter().copied().enumerate() {
             let options = SurfaceOptions { guarantee, ..SurfaceOptions::within(tolerance * scale) };
             let mut made = patches(std::slice::from_ref(&scaled), &options).unwrap();
             made.mesh.positions.iter_mut().for_each(|p| *p /= scale);

@@ -158,6 +158,8 @@ impl Frame<'_> {
                 false
             } else if j + 1 == left.len() {
                 true
+            } else if let Some(first) = self.away_from_poles([right, left], [i, j]) {
+                first
             } else {
                 length(right[i + 1], left[j]) <= length(right[i], left[j + 1])
             };
@@ -168,6 +170,21 @@ impl Frame<'_> {
                 triangles.push([right[i], left[j + 1], left[j]]);
                 j += 1;
             }
+        }
+    }
+
+    /// Whether the right chain must go on so that no pole at an end of one chain is over two vertices of the other, which
+    /// are in line with it; `None` where either may.
+    fn away_from_poles(&self, chains: [&[Local]; 2], at: [usize; 2]) -> Option<bool> {
+        let is_pole = |local: Local| self.nodes[local as usize].free.is_some();
+        let starts = [0, 1].map(|k: usize| is_pole(chains[k][at[k]]));
+        let ends = [0, 1].map(|k: usize| at[k] + 2 == chains[k].len() && is_pole(chains[k][at[k] + 1]));
+        match (starts, ends) {
+            ([true, false], _) => Some(true),
+            ([false, true], _) => Some(false),
+            (_, [true, false]) => Some(false),
+            (_, [false, true]) => Some(true),
+            _ => None,
         }
     }
 
@@ -208,7 +225,7 @@ impl Frame<'_> {
             while let [.., (a, _), (b, _)] = stack[..] {
                 let triangle = if of_right { [a, b, new] } else { [b, a, new] };
                 // Where rows run along v the plane is seen from behind.
-                let [p, q, r] = triangle.map(at);
+                let [p, q, r] = settled(triangle.map(|local| self.nodes[local as usize]));
                 let sticks_out = if axis == 1 {
                     turns_left([p, q, r], STRAIGHT, self.domain)
                 } else {
