@@ -261,7 +261,7 @@ fn sweeps_that_fold_are_followed() {
         (ring(60, 5.0), ring(45, 5.0), "tolerance = 0.1, twist = 90, kind = \"catmull-rom\""),
     ] {
         let solid = sweep(&path, &profile, rest);
-        let reach = largest(&solid, |p| p.length());
+        let reach = largest(&solid, ogee::math::Vec3::length);
         assert!(solid.volume() > 100.0 && reach > 7.4 && reach < 12.0, "{path} {profile} {rest}: {reach}");
     }
 }
