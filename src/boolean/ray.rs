@@ -9,7 +9,7 @@ use crate::numeric::Wide;
 use crate::polygon::exact::{Plane, PointId, Points, Site};
 use crate::spatial::Bvh;
 
-/// A triangle of a surface; the ray starts beside its centroid.
+/// A triangle of a surface; the ray starts beside a point inside of it, its centroid if that will do.
 pub(super) struct Anchor {
     pub(super) corners: [PointId; 3],
     pub(super) plane: Plane,
@@ -43,27 +43,37 @@ impl<'a> RayCaster<'a> {
         RayCaster { scene, boxes, members, finders }
     }
 
-    /// Winding numbers right beside the anchor's centroid, and whether that is the side to which its normal points.
+    /// Winding numbers right beside a point of the anchor, and whether that is the side to which its normal points.
+    ///
+    /// Other surfaces may touch the anchor from one side along a line, or in a point, which bounds none of its cells. Beside
+    /// that place winding numbers are not those of the rest, so the ray starts elsewhere.
     pub(super) fn cast(&mut self, anchor: &Anchor) -> (bool, Vec<(u32, i32)>) {
         // Above the plane, or, when that stands upright, to where the ray is moved.
         let side = [2, 0, 1].map(|axis| anchor.plane.normal_sign(axis)).into_iter().find(|&sign| sign != 0);
-        let start = Start::new(self.scene.points(), anchor);
+        let starts = weights().map(|weights| Start::new(self.scene.points(), anchor, weights));
+        let winding = starts.into_iter().find_map(|start| self.winding(&start));
+        (side == Some(1), winding.expect("no hundred planes pass all places of a triangle"))
+    }
+
+    /// Winding numbers around the start of a ray; `None` where the plane of some triangle near it passes it.
+    fn winding(&mut self, start: &Start) -> Option<Vec<(u32, i32)>> {
         let column = start.column();
         let mut near = Vec::new();
         self.members.touching(&self.boxes, column, |member| near.push(member));
         near.sort_unstable();
         let mut winding = Vec::new();
         for member in near {
-            let times = self.count(member, &start, column);
+            let times = self.count(member, start, column)?;
             if times != 0 {
                 winding.push((member, times));
             }
         }
-        (side == Some(1), winding)
+        Some(winding)
     }
 
-    /// How often a member winds around the start of the ray.
-    fn count(&mut self, member: u32, start: &Start, column: Aabb) -> i32 {
+    /// How often a member winds around the start of the ray; `None` where the plane of one of its triangles near it passes
+    /// it.
+    fn count(&mut self, member: u32, start: &Start, column: Aabb) -> Option<i32> {
         let (scene, finder) = (self.scene, &mut self.finders[member as usize]);
         let triangles = scene.members[member as usize].triangles.clone();
         finder.rays += 1;
@@ -76,41 +86,53 @@ impl<'a> RayCaster<'a> {
             let bvh = Bvh::new(&boxes);
             (boxes, bvh)
         });
-        let mut times = 0;
-        bvh.touching(boxes, column, |i| times += start.crossing(scene, triangles.start + i));
+        let mut times = Some(0);
+        bvh.touching(boxes, column, |i| {
+            times = times.zip(start.crossing(scene, triangles.start + i)).map(|(sum, one)| sum + one);
+        });
         times
     }
+}
+
+/// Weights of corners for points inside of a triangle, the centroid first. No line passes more than 127 of them, and no
+/// sum has more than 8 bits, for which the widths below have room.
+fn weights() -> impl Iterator<Item = [i64; 3]> {
+    (2..=127_i64).flat_map(|sum| (1..sum).map(move |first| [1, first, sum - first]))
 }
 
 type Numerator = Wide<19>;
 type Denominator = Wide<18>;
 
-/// The centroid of three points, exactly.
+/// A point between three others, exactly.
 struct Start {
     rounded: Vec3,
     /// Bound on the error of each rounded coordinate.
     error: f64,
     numerators: [Numerator; 3],
     denominator: Denominator,
-    /// The plane it starts beside.
+    /// The plane that it starts beside.
     home: Plane,
 }
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 
 impl Start {
-    fn new(points: &Points, anchor: &Anchor) -> Start {
+    fn new(points: &Points, anchor: &Anchor, weights: [i64; 3]) -> Start {
         let corners = anchor.corners;
         let places = corners.map(|p| points.rounded(p));
         let [(a, u), (b, v), (c, w)] = corners.map(|p| points.homogeneous(p));
         let product = |x: &Wide<6>, y: &Wide<6>| -> Wide<12> { x.times(y) };
         let (vw, wu, uv) = (product(&v, &w), product(&w, &u), product(&u, &v));
-        let numerator =
-            |i: usize| -> Numerator { a[i].times(&vw).plus(&b[i].times(&wu)).plus(&c[i].times(&uv)) };
-        let denominator: Denominator = uv.times::<6, 18>(&w).times(&Wide::<1>::from(3_i64));
+        let sum = weights.iter().sum::<i64>();
+        let weighted = |x: Numerator, k: usize| -> Numerator { x.times(&Wide::<1>::from(weights[k])) };
+        let numerator = |i: usize| -> Numerator {
+            let [a, b, c] = [a[i].times(&vw), b[i].times(&wu), c[i].times(&uv)];
+            weighted(a, 0).plus(&weighted(b, 1)).plus(&weighted(c, 2))
+        };
+        let denominator: Denominator = uv.times::<6, 18>(&w).times(&Wide::<1>::from(sum));
         let largest = places.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
         Start {
-            rounded: (places[0] + places[1] + places[2]) / 3.0,
+            rounded: (0..3).map(|k| weights[k] as f64 * places[k]).sum::<Vec3>() / sum as f64,
             error: 8.0 * UNIT * largest,
             numerators: [numerator(0), numerator(1), numerator(2)],
             denominator,
@@ -118,28 +140,41 @@ impl Start {
         }
     }
 
+    /// A box around the start.
+    fn place(&self) -> Aabb {
+        Aabb { min: self.rounded - Vec3::splat(self.error), max: self.rounded + Vec3::splat(self.error) }
+    }
+
     /// A box around the ray.
     fn column(&self) -> Aabb {
-        let min = self.rounded - Vec3::splat(self.error);
-        let max = self.rounded + Vec3::splat(self.error);
+        let Aabb { min, max } = self.place();
         Aabb { min, max: Vec3::new(max.x, max.y, f64::INFINITY) }
     }
 
-    /// 1 where the ray leaves through a triangle, -1 where it enters, 0 where it passes by.
-    fn crossing(&self, scene: &Scene<'_>, triangle: u32) -> i32 {
+    /// 1 where the ray leaves through a triangle, -1 where it enters, 0 where it passes by; `None` where another plane than
+    /// its own passes the start, as that of a triangle near it.
+    fn crossing(&self, scene: &Scene<'_>, triangle: u32) -> Option<i32> {
         let [a, b, c] = scene.corners[triangle as usize];
         let points = scene.points();
+        let plane = scene.plane_through(triangle);
+        let mut side = None;
+        if scene.bounds_of(triangle).touches(self.place()) {
+            side = Some(self.side(&plane));
+            if side == Some(0) && plane.longest_cross_axis(&self.home).is_some() {
+                return None;
+            }
+        }
         let turn = self.turn(points, a, b);
         if turn == 0 || self.turn(points, b, c) != turn || self.turn(points, c, a) != turn {
-            return 0;
+            return Some(0);
         }
         // The triangle faces up when it runs counter-clockwise around the ray; the start is below it when it is behind.
-        let plane = scene.plane_through(triangle);
-        let side = match self.side(&plane) {
-            0 => self.side_when_moved(&plane),
+        let side = match side.unwrap_or_else(|| self.side(&plane)) {
+            // In the plane it starts beside, it starts above.
+            0 => plane.normal_sign(2),
             side => side,
         };
-        if side == -turn { turn } else { 0 }
+        Some(if side == -turn { turn } else { 0 })
     }
 
     /// 1 when the moved ray passes to the left of the segment seen from above; 0 only for an upright segment.
@@ -181,19 +216,6 @@ impl Start {
         let sa: Wide<26> = start[0].times::<7, 26>(&a[1]).minus(&start[1].times(&a[0]));
         let sum: Wide<32> = ab.times(&self.denominator);
         sum.plus(&bs.times(&aw)).plus(&sa.times(&bw)).signum()
-    }
-
-    /// On which side of a plane through the centroid the start lies once the ray is moved: along its own plane, and above
-    /// that by less than any move; beside an upright plane just sideways.
-    fn side_when_moved(&self, plane: &Plane) -> i32 {
-        let normal = [0, 1, 2].map(|axis| plane.normal_sign(axis));
-        let up = self.home.normal_sign(2);
-        let moves = match up {
-            0 => normal,
-            // The plane's height over its own plane grows along x and y with these components of the normals' product.
-            _ => [-up * plane.cross_sign(&self.home, 1), up * plane.cross_sign(&self.home, 0), normal[2]],
-        };
-        moves.into_iter().find(|&sign| sign != 0).unwrap_or(0)
     }
 
     /// On which side of a plane the start lies.
