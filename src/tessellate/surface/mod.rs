@@ -259,26 +259,33 @@ pub fn surfaces(
     options: &SurfaceOptions,
 ) -> Result<Tessellation, TessellationError> {
     check_options(options)?;
-    // Coarse vertices can name one edge twice; more vertices on every edge help.
+    // Coarse vertices can name one edge twice, and beside a straight side of a twisted surface long edges can be too far
+    // off; more vertices on every edge help with both.
     const ATTEMPTS: [usize; 8] = [1, 2, 3, 5, 9, 17, 33, 65];
     let layout = Layout::new(surfaces)?;
     layout.check_precision(options)?;
-    let (mut tangled, mut by_place) = (None, false);
+    let mut failed = None;
     for least in ATTEMPTS {
-        let mut made = attempt(&layout, options, Care { least, by_place });
-        if !by_place && matches!(made, Err(TessellationError::NotReached { .. })) {
-            by_place = true;
-            made = attempt(&layout, options, Care { least, by_place });
+        let mut made = attempt(&layout, options, Care { least, by_place: false });
+        if failed.is_none() && matches!(made, Err(TessellationError::NotReached { .. })) {
+            made = attempt(&layout, options, Care { least, by_place: true });
         }
-        let tessellation = made.map_err(|error| tangled.unwrap_or(error))?;
+        let tessellation = match made {
+            Ok(tessellation) => tessellation,
+            Err(error @ TessellationError::NotReached { .. }) => {
+                failed.get_or_insert(error);
+                continue;
+            }
+            Err(error) => return Err(failed.unwrap_or(error)),
+        };
         let defects = Defects::of(&tessellation.mesh);
         let edges = defects.non_manifold_edges.saturating_sub(layout.crowded_edges());
         if edges == 0 && defects.duplicate_triangles == 0 {
             return Ok(tessellation);
         }
-        tangled.get_or_insert(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
+        failed.get_or_insert(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
     }
-    Err(tangled.expect("there was an attempt"))
+    Err(failed.expect("there was an attempt"))
 }
 
 /// How an attempt goes about it.
