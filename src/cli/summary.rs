@@ -1,7 +1,7 @@
 //! Measures of what was made, for people and for programs.
 
 use crate::boolean::Certificate;
-use crate::csg::Report;
+use crate::csg::{Report, Seams};
 use crate::curve::{Bounds, CurveError, Path};
 use crate::math::{Aabb, Vec2};
 use crate::mesh::{Defects, Measures};
@@ -62,7 +62,7 @@ impl Summary {
 
     /// Adds how the build went.
     pub(super) fn report(&mut self, report: &Report) -> &mut Summary {
-        let Report { made, booleans, reused, skipped, certificate, meshings, notes: _ } = report;
+        let Report { made, booleans, reused, skipped, certificate, meshings, seams, notes: _ } = report;
         self.row(
             "steps",
             json!({ "made": made, "booleans": booleans, "reused": reused, "skipped": skipped }),
@@ -72,6 +72,9 @@ impl Summary {
         }
         if !meshings.is_empty() {
             super::meshing::rows(meshings, self);
+        }
+        if *seams != Seams::default() {
+            self.row("seams", json!({ "moved": seams.moved, "left": seams.left }));
         }
         self
     }

@@ -2,7 +2,7 @@ use super::arena::Arena;
 use super::frame::is_finite;
 use super::plan::{self, Spot, Uses};
 use super::solve::Solver;
-use super::{Body, Csg, Dimension, Flat, Meshing};
+use super::{Body, Csg, Dimension, Flat, Meshing, Seams};
 use crate::boolean::{BooleanError, Certificate};
 use crate::isosurface::{self, IsoError};
 use crate::math::Affine3;
@@ -71,6 +71,8 @@ pub struct Report {
     pub certificate: Certificate,
     /// Meshes that were made of fields, in the order in which they were made.
     pub meshings: Vec<Meshing>,
+    /// What became of the curves in which curved surfaces of fields cut what they are combined with.
+    pub seams: Seams,
     /// What the user may want to know, each kind once.
     pub notes: Vec<Note>,
 }

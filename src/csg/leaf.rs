@@ -4,7 +4,7 @@ use super::arena::NodeId;
 use super::build::{BuildError, Note, Report};
 use super::frame::plane_part;
 use super::plan::{self, Spot};
-use super::solve::{Geometry, Leaf, Solver};
+use super::solve::{Leaf, Solver};
 use super::{Body, Csg, Dimension};
 use crate::boolean::Op;
 use crate::hull::convex_hull;
@@ -62,11 +62,11 @@ impl Solver<'_, '_> {
                 self.check_limit(mesh::frustum_triangles(*radii, *fragments))?;
                 Leaf::of(mesh::frustum(*heights, *radii, *fragments)?)
             }
-            Body::Mesh(mesh) => Leaf { geometry: Geometry::Mesh(mesh.clone()), clean: false },
+            Body::Mesh(mesh) => Leaf::unknown(mesh.clone()),
             Body::Surface(surface) => {
                 let mesh = surface.mesh(self.max_triangles())?;
                 self.check_limit(mesh.triangles.len() as u64)?;
-                Leaf { geometry: Geometry::Mesh(Arc::new(mesh)), clean: false }
+                Leaf::unknown(Arc::new(mesh))
             }
             Body::Field(field) => self.field_leaf(node, field)?,
         })

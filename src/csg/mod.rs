@@ -22,7 +22,7 @@ pub use build::{
     BuildError, BuildOptions, Built, Color, Note, Progress, Report, Shape, Stage, build, build_with_progress,
 };
 pub use explain::explain;
-pub use field::{FieldBody, FieldShape, Formula, Meshing, Offset};
+pub use field::{FieldBody, FieldShape, Formula, Meshing, Offset, Seams};
 pub use parametric::Parametric;
 pub use print::print;
 pub use surface::{Explicit, SurfaceBody};

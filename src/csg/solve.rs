@@ -2,6 +2,7 @@
 
 use super::arena::{Arena, NodeId};
 use super::build::{BuildError, BuildOptions, Color, Note, Progress, Report, Stage};
+use super::field::{Faces, Sewn, Surface, sew};
 use super::frame::{is_identity, widened};
 use super::plan::{self, Kind, Plan, Spot, Uses};
 use crate::boolean::{self, Op, Operand, Tree};
@@ -46,13 +47,17 @@ pub(super) struct Leaf {
     pub(super) geometry: Geometry,
     /// Whether the surface does not cross itself, so that it may stay as it is when nothing is done to it.
     pub(super) clean: bool,
+    /// The curved surface that all triangles stand for.
+    pub(super) surface: Option<Surface>,
 }
 
 /// A leaf or a result in the coordinates where it takes part.
 #[derive(Clone)]
 struct Part {
-    leaf: Leaf,
+    geometry: Geometry,
+    clean: bool,
     paint: Paint,
+    faces: Arc<Faces>,
 }
 
 /// Colours of triangles.
@@ -93,8 +98,8 @@ impl<'a, 'b> Solver<'a, 'b> {
 
     /// The solid of a plan, and the colours of its triangles, none where nothing is coloured.
     pub(super) fn solid_of(&mut self, plan: &Plan) -> Result<(Solid, Vec<Option<Color>>), BuildError> {
-        let Part { leaf, paint } = self.solve(plan)?;
-        let solid = match leaf.geometry {
+        let Part { geometry, paint, faces, .. } = self.solve(plan)?;
+        let solid = match geometry {
             Geometry::Solid(solid) => Arc::unwrap_or_clone(solid),
             Geometry::Mesh(_) => unreachable!("solving makes solids"),
         };
@@ -103,6 +108,11 @@ impl<'a, 'b> Solver<'a, 'b> {
             Paint::All(color) => vec![color; solid.triangles().len()],
             Paint::Each(colors) => colors,
         };
+        let Some(Sewn { solid, parents, seams }) = sew(&solid, &faces) else { return Ok((solid, colors)) };
+        self.check_limit(solid.triangles().len() as u64)?;
+        self.report.seams = self.report.seams.and(seams);
+        let of_parent = |&parent: &u32| colors.get(parent as usize).copied();
+        let colors = parents.iter().filter_map(of_parent).collect();
         Ok((solid, colors))
     }
 
@@ -141,7 +151,7 @@ impl<'a, 'b> Solver<'a, 'b> {
         match &plan.kind {
             Kind::Leaf(spot) => {
                 let part = self.part(*spot)?;
-                if part.leaf.clean { Ok(part) } else { self.evaluate(&Tree::Leaf(0), &[part]) }
+                if part.clean { Ok(part) } else { self.evaluate(&Tree::Leaf(0), &[part]) }
             }
             Kind::Frame { map, inner } => moved(self.solve(inner)?, map),
             Kind::Node { op: Op::Union, parts, .. } => {
@@ -209,8 +219,10 @@ impl<'a, 'b> Solver<'a, 'b> {
     }
 
     fn part(&mut self, spot: Spot) -> Result<Part, BuildError> {
-        let leaf = self.leaf(spot.node)?;
-        let part = Part { leaf, paint: Paint::All(spot.color) };
+        let Leaf { geometry, clean, surface } = self.leaf(spot.node)?;
+        let faces = surface.map(|surface| Faces::on(&surface, geometry.mesh().triangles.len()));
+        let faces = Arc::new(faces.unwrap_or_default());
+        let part = Part { geometry, clean, paint: Paint::All(spot.color), faces };
         self.spend(&part)?;
         moved(part, &spot.map)
     }
@@ -248,7 +260,10 @@ impl<'a, 'b> Solver<'a, 'b> {
             Some(color) => Paint::All(color),
             None => Paint::Each(combined.birth.iter().map(color_of).collect()),
         };
-        Ok(Part { leaf: Leaf { geometry: Geometry::Solid(Arc::new(combined.solid)), clean: true }, paint })
+        let births = combined.birth.iter().map(|birth| [birth.operand, birth.triangle].map(|i| i as usize));
+        let faces = Faces::chosen(&parts.iter().map(|part| &*part.faces).collect::<Vec<_>>(), births);
+        let geometry = Geometry::Solid(Arc::new(combined.solid));
+        Ok(Part { geometry, clean: true, paint, faces: Arc::new(faces) })
     }
 }
 
@@ -283,22 +298,32 @@ impl Geometry {
 
 impl Leaf {
     pub(super) fn of(solid: Solid) -> Leaf {
-        Leaf { clean: solid.is_embedded(), geometry: Geometry::Solid(Arc::new(solid)) }
+        Leaf { clean: solid.is_embedded(), geometry: Geometry::Solid(Arc::new(solid)), surface: None }
+    }
+
+    /// A mesh of which nothing is known.
+    pub(super) fn unknown(mesh: Arc<Mesh>) -> Leaf {
+        Leaf { clean: false, geometry: Geometry::Mesh(mesh), surface: None }
+    }
+
+    /// The same, all its triangles within a tolerance of a curved surface.
+    pub(super) fn near(self, surface: Surface) -> Leaf {
+        Leaf { surface: Some(surface), ..self }
     }
 }
 
 impl Part {
     fn empty() -> Part {
         let geometry = Geometry::Solid(Arc::default());
-        Part { leaf: Leaf { geometry, clean: true }, paint: Paint::All(None) }
+        Part { geometry, clean: true, paint: Paint::All(None), faces: Arc::default() }
     }
 
     fn mesh(&self) -> &Mesh {
-        self.leaf.geometry.mesh()
+        self.geometry.mesh()
     }
 
     fn operand(&self) -> Operand<'_> {
-        match &self.leaf.geometry {
+        match &self.geometry {
             Geometry::Solid(solid) => (&**solid).into(),
             Geometry::Mesh(mesh) => (&**mesh).into(),
         }
@@ -331,14 +356,15 @@ fn moved(part: Part, map: &Affine3) -> Result<Part, BuildError> {
     }
     let image = Mesh { positions, triangles: mesh.triangles.clone() };
     let image = if map.matrix3.determinant() < 0.0 { image.flipped() } else { image };
-    let geometry = match &part.leaf.geometry {
+    let geometry = match &part.geometry {
         Geometry::Solid(solid) => {
             let embedded = solid.is_embedded() && is_exact(map, &mesh.positions);
             Geometry::Solid(Arc::new(Solid::assume(image, embedded)))
         }
         Geometry::Mesh(_) => Geometry::Mesh(Arc::new(image)),
     };
-    Ok(Part { leaf: Leaf { geometry, ..part.leaf }, ..part })
+    let faces = if part.faces.is_flat() { part.faces } else { Arc::new(part.faces.moved(map)) };
+    Ok(Part { geometry, faces, ..part })
 }
 
 /// Whether a map only exchanges, mirrors and shifts coordinates, and moves all points without rounding.
@@ -398,10 +424,13 @@ fn side_by_side(mut parts: Vec<Part>) -> Part {
             Paint::Each(parts.iter().flat_map(colors).collect())
         }
     };
-    let embedded = |part: &Part| matches!(&part.leaf.geometry, Geometry::Solid(s) if s.is_embedded());
+    let embedded = |part: &Part| matches!(&part.geometry, Geometry::Solid(s) if s.is_embedded());
     let all_embedded = parts.iter().all(embedded);
     let mut mesh = Mesh::default();
     parts.iter().for_each(|part| mesh.append(part.mesh()));
+    let births =
+        (0..).zip(&parts).flat_map(|(i, part)| (0..part.mesh().triangles.len()).map(move |t| [i, t]));
+    let faces = Faces::chosen(&parts.iter().map(|part| &*part.faces).collect::<Vec<_>>(), births);
     let solid = Solid::assume(mesh, all_embedded);
-    Part { leaf: Leaf { geometry: Geometry::Solid(Arc::new(solid)), clean: true }, paint }
+    Part { geometry: Geometry::Solid(Arc::new(solid)), clean: true, paint, faces: Arc::new(faces) }
 }

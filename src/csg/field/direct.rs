@@ -15,9 +15,19 @@ const MOST_SIDES: f64 = 1e7;
 
 /// A shape of known faces around the origin.
 pub(in crate::csg) enum Direct {
-    Cuboid { half: Vec3 },
-    Octahedron { radius: f64 },
-    Rings { radii: [f64; 2], half_height: f64, sides: u32 },
+    Cuboid {
+        half: Vec3,
+    },
+    Octahedron {
+        radius: f64,
+    },
+    /// Rings of so many sides, which stand for circles or are meant so.
+    Rings {
+        radii: [f64; 2],
+        half_height: f64,
+        sides: u32,
+        round: bool,
+    },
     Rounded(Rounded),
     Turned(Turned),
 }
@@ -30,7 +40,8 @@ impl FieldBody {
     /// asks for.
     pub(in crate::csg) fn direct(&self) -> Option<Direct> {
         let rings = |radii: [f64; 2], half_height| {
-            Some(Direct::Rings { radii, half_height, sides: self.sides(radii[0].max(radii[1]))? })
+            let sides = self.sides(radii[0].max(radii[1]))?;
+            Some(Direct::Rings { radii, half_height, sides, round: true })
         };
         match self.shape {
             FieldShape::Primitive(Primitive::Cuboid { half }) => Some(Direct::Cuboid { half }),
@@ -41,7 +52,7 @@ impl FieldBody {
             FieldShape::Primitive(primitive) => self.round(primitive),
             FieldShape::Frustum { radii, half_height } => rings(radii, half_height),
             FieldShape::Prism { sides, radius, half_height } => {
-                Some(Direct::Rings { radii: [radius; 2], half_height, sides })
+                Some(Direct::Rings { radii: [radius; 2], half_height, sides, round: false })
             }
             _ => None,
         }
@@ -104,6 +115,15 @@ impl Direct {
         }
     }
 
+    /// Whether its triangles stand for a curved surface.
+    pub(super) fn is_round(&self) -> bool {
+        match self {
+            Direct::Cuboid { .. } | Direct::Octahedron { .. } => false,
+            Direct::Rings { round, .. } => *round,
+            Direct::Rounded(_) | Direct::Turned(_) => true,
+        }
+    }
+
     pub(super) fn solid(&self) -> Result<Solid, BuildError> {
         Ok(match self {
             &Direct::Cuboid { half } => mesh::cuboid(-half, half),
@@ -111,7 +131,7 @@ impl Direct {
                 let corners = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| [radius * axis, -radius * axis]);
                 convex_hull(corners.as_flattened())?
             }
-            &Direct::Rings { radii, half_height, sides } => {
+            &Direct::Rings { radii, half_height, sides, .. } => {
                 mesh::frustum([-half_height, half_height], radii, sides)?
             }
             Direct::Rounded(body) => body.solid(),

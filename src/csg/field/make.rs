@@ -1,5 +1,6 @@
 //! Making fields and their meshes.
 
+use super::faces::Surface;
 use super::plan::{self, FieldPlan, Way, composed};
 use crate::csg::arena::NodeId;
 use crate::csg::build::{BuildError, Stage};
@@ -50,7 +51,11 @@ impl Solver<'_, '_> {
             if let Some(error) = direct.error() {
                 self.note_round(node, body, &solid, error);
             }
-            return Ok(Leaf::of(solid));
+            let leaf = Leaf::of(solid);
+            if !direct.is_round() {
+                return Ok(leaf);
+            }
+            return Ok(leaf.near(Surface::new(body.implicit()?.tape(), body.tolerance)));
         }
         let field = body.implicit()?;
         let (bounds, cut) = (body.bounds(), body.cut());
@@ -58,7 +63,7 @@ impl Solver<'_, '_> {
             return Ok(Leaf::of(Solid::default()));
         }
         let solid = self.meshed(node, &field, cut.unwrap_or(bounds), cut.is_some(), [body.tolerance, 0.0])?;
-        Ok(Leaf::of(solid))
+        Ok(Leaf::of(solid).near(Surface::new(field.tape(), body.tolerance)))
     }
 
     /// Reports a round body that was made without a search.
@@ -90,7 +95,8 @@ impl Solver<'_, '_> {
         };
         let Made { field, error } = self.field(node, &plan, tolerance)?;
         let bounds = self.arena.get(node).bounds;
-        Ok(Leaf::of(self.meshed(node, &field, bounds, false, [tolerance - error, error])?))
+        let solid = self.meshed(node, &field, bounds, false, [tolerance - error, error])?;
+        Ok(Leaf::of(solid).near(Surface::new(field.tape(), tolerance)))
     }
 
     /// The field of a plan, good to half of `tolerance`, as a part of the leaf `node`.

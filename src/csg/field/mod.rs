@@ -4,6 +4,7 @@
 //! each meshed by itself to its own tolerance.
 
 mod direct;
+mod faces;
 mod flush;
 mod leaf;
 mod make;
@@ -11,10 +12,14 @@ pub(super) mod plan;
 pub(super) mod print;
 pub(super) mod reach;
 mod round;
+mod seams;
 
 pub(super) use direct::Direct;
+pub(super) use faces::{Faces, Surface};
 pub use leaf::{FieldBody, FieldShape, Formula};
 pub use make::Meshing;
+pub use seams::Seams;
+pub(super) use seams::{Sewn, sew};
 
 /// What is done to the surface of a solid by its distance. Lengths are in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
