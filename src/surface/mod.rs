@@ -53,6 +53,7 @@ pub use nearest::{Nearest, nearest};
 pub use patch::Patch;
 pub(crate) use patch::check_degrees;
 pub use rational::RationalPatch;
+pub(crate) use round_triangle::least_distance;
 pub use sides::{Gluing, Side, Sides};
 pub use skin::{Coons, Ruled, revolution};
 pub use sweep::{Sweep, Tube};

@@ -38,7 +38,7 @@ fn cone([radius, height]: [f64; 2], corners: [Vec3; 3]) -> f64 {
 }
 
 /// The least distance of a triangle from the origin; a triangle without area counts as its sides.
-fn least_distance([a, b, c]: [Vec3; 3]) -> f64 {
+pub(crate) fn least_distance([a, b, c]: [Vec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let is_left = |p: Vec3, q: Vec3| normal.dot((q - p).cross(-p)) >= 0.0;
     if normal.length_squared() > 0.0 && is_left(a, b) && is_left(b, c) && is_left(c, a) {

@@ -3,7 +3,7 @@
 use super::slide::{self, Turned};
 use super::table::Table;
 use crate::math::Vec3;
-use crate::surface::{Jet, Surface};
+use crate::surface::{Jet, Surface, least_distance};
 
 /// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
 pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
@@ -179,8 +179,9 @@ pub(super) fn measure(
     most
 }
 
-/// The largest of the distances found at places of a triangle that are above what is known, each searched for from the
-/// nearest of the points of the surface at all of them: the parameters of a place can be far off where speeds change.
+/// The largest of the distances found at places of a triangle that are above what is known, looked at closely. Along a fold
+/// parameters run unevenly: a place may be near the surface, and the point at its parameters near the triangle, though they
+/// are not near each other.
 pub(super) fn closely(
     surface: &dyn Surface,
     places: &[[f64; 3]],
@@ -194,14 +195,19 @@ pub(super) fn closely(
     let mut points = vec![Vec3::ZERO; at.len()];
     surface.points(&at, &mut points);
     let mut most = known;
-    for (k, &distance) in found.iter().enumerate().filter(|(_, distance)| !(**distance <= known)) {
+    for (k, &distance) in found.iter().enumerate() {
+        if distance <= known {
+            continue;
+        }
         let place = place(places[k], &corners);
+        let own = distance.min(distance_from(surface, domain, place, at[k]));
         let nearest =
             |a: &usize, b: &usize| points[*a].distance(place).total_cmp(&points[*b].distance(place));
         let start = (0..at.len()).min_by(nearest).unwrap_or(k);
-        let near = [k, start].map(|k| distance_from(surface, domain, place, at[k]));
+        let there = distance_from(surface, domain, place, at[start]);
+        let back = least_distance(corners.map(|corner| corner - points[k]));
+        let near = own.min(there.max(back));
         // NaN must not pass for small.
-        let near = near.into_iter().fold(distance, f64::min);
         if near.is_nan() {
             return f64::INFINITY;
         }
