@@ -1008,6 +1008,28 @@ fn surfaces_of_curves_close() {
     assert!(vase.volume() > 2.0 * PI && vase.volume() < 8.0 * PI);
 }
 
+/// A profile that reaches beyond the middle of its closed path: three points of an edge had told too little, and what the
+/// edge missed could not be made up for inside.
+#[test]
+fn sweeps_beyond_the_middle_of_their_path_are_followed() {
+    let ring = |radius: f64| {
+        let corner = |k: u32| {
+            let (sine, cosine) = ogee::math::sin_cos_degrees(120.0 * f64::from(k));
+            radius * Vec2::new(cosine, sine)
+        };
+        [0, 1, 2].map(corner).to_vec()
+    };
+    for (path, profile, twist) in [(4.0, 4.0, 90.0_f64), (5.0, 6.5, 0.0)] {
+        let path: Vec<Vec3> = ring(path).iter().map(|p| p.extend(0.0)).collect();
+        let path = Spline::catmull_rom(&path, ogee::curve::Spacing::Centripetal, true).unwrap();
+        let profile = Spline::catmull_rom(&ring(profile), ogee::curve::Spacing::Centripetal, true).unwrap();
+        let sweep = Sweep::new(path, profile, twist.to_radians(), 1.0).unwrap();
+        let made = surface(&sweep, &SurfaceOptions::within(0.01)).unwrap();
+        assert!(made.error.measured <= 0.01);
+        assert!(Defects::of(&made.mesh).is_solid());
+    }
+}
+
 #[test]
 fn ruled_coons_and_b_spline_surfaces_follow_their_curves() {
     let bow =
