@@ -156,16 +156,15 @@ impl Body {
 /// The points of the vertices of a mesh that was rounded.
 fn exact_points(world: &mut World<'_>, positions: &[Vec3], origin: &Origin) -> Vec<PointId> {
     let (mut sites, mut fractions) = (origin.sites.iter().peekable(), origin.fractions.iter().peekable());
-    let mut point = |(vertex, &position): (u32, &Vec3)| {
+    world.places.add_each(positions, |places, vertex, position| {
         if let Some((_, site)) = sites.next_if(|site| site.0 == vertex) {
-            world.places.add_at(*site, position)
+            places.add_at(*site, position)
         } else if let Some((_, fraction)) = fractions.next_if(|fraction| fraction.0 == vertex) {
-            world.places.points.fraction_point(fraction.numerators, fraction.denominator)
+            places.points.fraction_point(fraction.numerators, fraction.denominator)
         } else {
-            world.places.add(position)
+            places.add(position)
         }
-    };
-    (0..).zip(positions).map(&mut point).collect()
+    })
 }
 
 /// Twins of the triangles that have a slot, by slots.

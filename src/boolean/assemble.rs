@@ -443,12 +443,14 @@ impl Surface {
                 self.set_line(3 * triangle + side, scene.line_index(half_edge));
             }
         }
-        for (half_edge, &twin) in (0_u32..).zip(&scene.twins) {
-            if twin != NONE && half_edge < twin {
-                let (a, b) =
-                    (self.of_whole_half_edge(regions, half_edge), self.of_whole_half_edge(regions, twin));
-                if let (Some(a), Some(b)) = (a, b) {
-                    self.link(a, b);
+        for t in (0..scene.corners.len() as u32).filter(|&t| self.of_whole[t as usize] != NONE) {
+            for half_edge in 3 * t..3 * t + 3 {
+                let twin = scene.twins[half_edge as usize];
+                if twin != NONE
+                    && let Some(other) = self.of_whole_half_edge(regions, twin)
+                    && let Some(own) = self.of_whole_half_edge(regions, half_edge)
+                {
+                    self.twins[own as usize] = other;
                 }
             }
         }

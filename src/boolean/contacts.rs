@@ -58,8 +58,15 @@ struct Finder {
     stops: Vec<Stop>,
     /// Triangles joined across diagonals that contacts cross.
     faces: Option<DisjointSets>,
-    /// Where edges cross the planes of triangles: both triangles along an edge ask for it.
-    crossings: Lookup<(PointId, PointId, u32), PointId>,
+    /// Where edges cross planes: both triangles along an edge ask for it, for all triangles in the plane.
+    crossings: Lookup<(PointId, PointId, Across), PointId>,
+}
+
+/// What an edge crosses: a plane of the world, or that of a triangle for which none is known yet.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Across {
+    Plane(u32),
+    Triangle(u32),
 }
 
 /// Where a contact of two faces starts or ends.
@@ -256,14 +263,18 @@ impl Finder {
         }
         let line = scene.line_index(half_edge);
         let [from, to] = scene.ends(half_edge);
+        let across =
+            scene.facing(other).map_or(Across::Triangle(other), |facing| Across::Plane(facing.plane()));
         let points = &mut scene.world.places.points;
-        End::Point(*self.crossings.entry((from.min(to), from.max(to), other)).or_insert_with(|| match line {
-            NONE => points.crossing(from, to, plane),
-            index => {
-                let line = &scene.world.lines[index as usize];
-                points.meeting(own, line, plane).expect("a line that crosses a plane meets it")
-            }
-        }))
+        End::Point(*self.crossings.entry((from.min(to), from.max(to), across)).or_insert_with(
+            || match line {
+                NONE => points.crossing(from, to, plane),
+                index => {
+                    let line = &scene.world.lines[index as usize];
+                    points.meeting(own, line, plane).expect("a line that crosses a plane meets it")
+                }
+            },
+        ))
     }
 
     /// Makes traces of the starts and ends that belong together.

@@ -2,8 +2,8 @@
 
 use super::scene::Scene;
 use super::slope::are_parted;
-use crate::math::{Aabb, Vec3, cbrt};
-use crate::spatial::Bvh;
+use crate::math::Aabb;
+use crate::spatial::{Bvh, Grid};
 
 /// Pairs of triangles that may have a contact: of different members and, in members not known to be embedded, of one.
 pub(super) fn candidates(scene: &Scene<'_>) -> Vec<[u32; 2]> {
@@ -137,14 +137,15 @@ impl Crowd {
             self.large.push((member, bounds));
             return;
         }
-        for cell in self.grid.cells(span) {
+        self.grid.any_cell(span, |cell| {
             let reached_by = &mut self.reached_by[cell];
             *reached_by = match *reached_by {
                 NOBODY => member,
                 known if known == member => member,
                 _ => SEVERAL,
             };
-        }
+            false
+        });
     }
 
     /// Whether something of another member may touch a triangle with this box.
@@ -153,7 +154,7 @@ impl Crowd {
         if span.len() > LARGE {
             return true;
         }
-        if self.grid.cells(span).any(|cell| self.reached_by[cell] == SEVERAL) {
+        if self.grid.any_cell(span, |cell| self.reached_by[cell] == SEVERAL) {
             return true;
         }
         let mut near = false;
@@ -161,63 +162,5 @@ impl Crowd {
             near |= self.large[i as usize].0 != member as u32;
         });
         near
-    }
-}
-
-/// A grid of cells over a box. The cell of a coordinate grows with it, so boxes that touch have a cell in common.
-struct Grid {
-    min: Vec3,
-    /// Cells a unit along each axis.
-    scale: Vec3,
-    counts: [usize; 3],
-}
-
-/// Cells from one to another, both included, along each axis.
-#[derive(Clone, Copy)]
-struct Span {
-    from: [usize; 3],
-    to: [usize; 3],
-}
-
-impl Grid {
-    /// About as many cells as triangles: then most triangles of an even surface span few cells, and most cells are free.
-    fn new(bounds: Aabb, triangles: usize) -> Grid {
-        const MOST: f64 = 128.0;
-        let size = bounds.size();
-        let longest = size.max_element();
-        let cells = cbrt(triangles as f64).ceil().min(MOST);
-        let count = |extent: f64| {
-            if longest > 0.0 { (cells * extent / longest).ceil().clamp(1.0, MOST) } else { 1.0 }
-        };
-        let counts = Vec3::from_array(size.to_array().map(count));
-        let scale = counts / size;
-        let scale = Vec3::from_array(scale.to_array().map(|s| if s.is_finite() { s } else { 0.0 }));
-        Grid { min: bounds.min, scale, counts: counts.to_array().map(|c| c as usize) }
-    }
-
-    fn len(&self) -> usize {
-        self.counts.iter().product()
-    }
-
-    fn span(&self, bounds: Aabb) -> Span {
-        let cell = |p: Vec3| {
-            let place = ((p - self.min) * self.scale).to_array();
-            [0, 1, 2].map(|axis| (place[axis].max(0.0) as usize).min(self.counts[axis] - 1))
-        };
-        Span { from: cell(bounds.min), to: cell(bounds.max) }
-    }
-
-    fn cells(&self, span: Span) -> impl Iterator<Item = usize> {
-        let [nx, ny, _] = self.counts;
-        let Span { from, to } = span;
-        (from[2]..=to[2]).flat_map(move |z| {
-            (from[1]..=to[1]).flat_map(move |y| (from[0]..=to[0]).map(move |x| (z * ny + y) * nx + x))
-        })
-    }
-}
-
-impl Span {
-    fn len(self) -> usize {
-        (0..3).map(|axis| self.to[axis] - self.from[axis] + 1).product()
     }
 }

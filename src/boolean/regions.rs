@@ -89,25 +89,27 @@ struct Patches {
 
 fn find_patches(scene: &Scene<'_>, carriers: &Carriers) -> Patches {
     let count = scene.corners.len();
-    let touched = &carriers.touched;
-    let mut sets = DisjointSets::new(count);
-    for (half_edge, &twin) in scene.twins.iter().enumerate() {
-        if twin != NONE && !touched[half_edge / 3] && !touched[twin as usize / 3] {
-            sets.join(half_edge as u32 / 3, twin / 3);
+    let (mut cell_of_triangle, mut first_triangle) = (vec![NONE; count], Vec::new());
+    let mut cell_count = carriers.cell_count;
+    let mut stack = Vec::new();
+    for first in 0..count as u32 {
+        if carriers.touched[first as usize] || cell_of_triangle[first as usize] != NONE {
+            continue;
         }
-    }
-    let mut cell_of_triangle = vec![u32::MAX; count];
-    let mut first_triangle = Vec::new();
-    for t in (0..count as u32).filter(|&t| !touched[t as usize]) {
-        let root = sets.find(t);
-        if root == t {
-            cell_of_triangle[t as usize] = carriers.cell_count + first_triangle.len() as u32;
-            first_triangle.push(t);
-        } else {
-            cell_of_triangle[t as usize] = cell_of_triangle[root as usize];
+        cell_of_triangle[first as usize] = cell_count;
+        first_triangle.push(first);
+        stack.push(first);
+        while let Some(t) = stack.pop() {
+            for &twin in &scene.twins[3 * t as usize..][..3] {
+                let next = twin as usize / 3;
+                if twin != NONE && !carriers.touched[next] && cell_of_triangle[next] == NONE {
+                    cell_of_triangle[next] = cell_count;
+                    stack.push(next as u32);
+                }
+            }
         }
+        cell_count += 1;
     }
-    let cell_count = carriers.cell_count + first_triangle.len() as u32;
     Patches { cell_of_triangle, first_triangle, cell_count }
 }
 

@@ -87,7 +87,8 @@ impl<'a> Scene<'a> {
 
     /// The box of a triangle, in lattice units.
     pub(super) fn bounds_of(&self, triangle: u32) -> Aabb {
-        Aabb::of(self.corners[triangle as usize].map(|p| self.points().rounded(p)))
+        let ([a, b, c], points) = (self.corners[triangle as usize], self.points());
+        Aabb::around([points.rounded(a), points.rounded(b), points.rounded(c)])
     }
 
     /// The member that a triangle belongs to.

@@ -14,7 +14,8 @@ pub(super) struct Slope {
 
 impl Slope {
     pub(super) fn new(points: &Points, corners: [PointId; 3]) -> Slope {
-        let [a, b, c] = corners.map(|p| points.rounded(p));
+        let [a, b, c] = corners;
+        let (a, b, c) = (points.rounded(a), points.rounded(b), points.rounded(c));
         let (u, v) = (b - a, c - a);
         Slope { corner: a, normal: u.cross(v), reach: u.abs().max(v.abs()) }
     }

@@ -18,6 +18,12 @@ impl Aabb {
         points.into_iter().fold(Aabb::EMPTY, Aabb::including)
     }
 
+    /// The smallest box around a triangle.
+    #[inline]
+    pub fn around([a, b, c]: [Vec3; 3]) -> Aabb {
+        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+    }
+
     /// The smallest box around this one and `point`.
     pub fn including(self, point: Vec3) -> Aabb {
         Aabb { min: self.min.min(point), max: self.max.max(point) }

@@ -3,7 +3,7 @@
 use super::Mesh;
 use crate::math::{Aabb, Vec2, Vec3};
 use crate::numeric::{orient2d, orient3d};
-use crate::spatial::Bvh;
+use crate::spatial::{Bvh, Grid};
 
 /// Pairs of triangles that pass through each other, at least one of each pair among `suspects` (in increasing order):
 /// a side of one passes strictly through the inside of the other, or both lie in one plane and overlap. Corners at one
@@ -17,7 +17,7 @@ pub fn crossing_pairs(mesh: &Mesh, suspects: &[u32]) -> Vec<[u32; 2]> {
     if suspects.is_empty() {
         return Vec::new();
     }
-    let bounds = |t: u32| Aabb::of(mesh.corners(t as usize));
+    let bounds = |t: u32| Aabb::around(mesh.corners(t as usize));
     let own: Vec<Aabb> = suspects.iter().map(|&t| bounds(t)).collect();
     let own_bvh = Bvh::new(&own);
     let window = own.iter().fold(Aabb::EMPTY, |all, &one| all.union(one));
@@ -28,11 +28,13 @@ pub fn crossing_pairs(mesh: &Mesh, suspects: &[u32]) -> Vec<[u32; 2]> {
         }
     };
     own_bvh.self_pairs(&own, |i, j| examine(suspects[i as usize], suspects[j as usize]));
+    let places = Places::of(&own, window);
     let mut next_suspects = suspects.iter().peekable();
     for t in 0..mesh.triangles.len() as u32 {
         let is_suspect = next_suspects.next_if_eq(&&t).is_some();
         let bounds = bounds(t);
-        if !is_suspect && bounds.touches(window) {
+        if !is_suspect && bounds.touches(window) && places.as_ref().is_none_or(|places| places.reach(bounds))
+        {
             own_bvh.touching(&own, bounds, |i| examine(suspects[i as usize], t));
         }
     }
@@ -40,12 +42,55 @@ pub fn crossing_pairs(mesh: &Mesh, suspects: &[u32]) -> Vec<[u32; 2]> {
     found
 }
 
+/// Cells of a coarse grid that some boxes reach: most triangles of a large mesh are told apart from them so.
+struct Places {
+    grid: Grid,
+    reached: Vec<bool>,
+}
+
+impl Places {
+    /// `None` where there are few boxes, or large ones among them.
+    fn of(boxes: &[Aabb], window: Aabb) -> Option<Places> {
+        const FEW: usize = 64;
+        const CELLS_A_BOX: usize = 4;
+        const LARGE: usize = 64;
+        if boxes.len() < FEW {
+            return None;
+        }
+        let grid = Grid::new(window, CELLS_A_BOX * boxes.len());
+        let mut reached = vec![false; grid.len()];
+        for &one in boxes {
+            let span = grid.span(one);
+            if span.len() > LARGE {
+                return None;
+            }
+            grid.any_cell(span, |cell| {
+                reached[cell] = true;
+                false
+            });
+        }
+        Some(Places { grid, reached })
+    }
+
+    /// Whether any of the boxes may touch this one.
+    fn reach(&self, bounds: Aabb) -> bool {
+        let span = self.grid.span(bounds);
+        self.grid.any_cell(span, |cell| self.reached[cell])
+    }
+}
+
 type Corners = [Vec3; 3];
 
 /// Whether two triangles pass through each other.
 fn cross(a: &Corners, b: &Corners) -> bool {
-    let shared_a = a.map(|p| b.contains(&p));
-    let shared_b = b.map(|p| a.contains(&p));
+    let (mut shared_a, mut shared_b) = ([false; 3], [false; 3]);
+    for i in 0..3 {
+        for j in 0..3 {
+            if a[i] == b[j] {
+                (shared_a[i], shared_b[j]) = (true, true);
+            }
+        }
+    }
     let (normal_a, normal_b) = (normal(a), normal(b));
     match shared_a.iter().filter(|&&shared| shared).count() {
         3 => has_area(a),
@@ -89,13 +134,14 @@ fn is_beside_plane(a: &Corners, normal: Vec3, b: &Corners, shared_b: [bool; 3]) 
     const FILTER: f64 = 8.0 * (f64::EPSILON / 2.0);
     let (u, v) = ((a[1] - a[0]).abs(), (a[2] - a[0]).abs());
     let magnitude = Vec3::new(u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x);
-    let mut sides = (0..3).filter(|&i| !shared_b[i]).map(|i| {
+    let (mut above, mut below) = (true, true);
+    for i in 0..3 {
         let w = b[i] - a[0];
         let (value, bound) = (normal.dot(w), FILTER * magnitude.dot(w.abs()));
-        i32::from(value > bound) - i32::from(value < -bound)
-    });
-    let first = sides.next().unwrap_or(0);
-    first != 0 && sides.all(|side| side == first)
+        above &= shared_b[i] || value > bound;
+        below &= shared_b[i] || value < -bound;
+    }
+    above != below
 }
 
 /// A quick sign that two triangles with at most one common corner have nothing else in common: seen along an axis, a

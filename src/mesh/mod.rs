@@ -36,8 +36,10 @@ impl Mesh {
     }
 
     /// The three corners of triangle `index`.
+    #[inline]
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
-        self.triangles[index].map(|v| self.positions[v as usize])
+        let [a, b, c] = self.triangles[index];
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// The smallest box around all positions.

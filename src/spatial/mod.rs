@@ -1,5 +1,7 @@
 //! Finding by place.
 
 mod bvh;
+mod grid;
 
 pub use bvh::Bvh;
+pub use grid::{Grid, Span};

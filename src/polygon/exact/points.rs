@@ -59,10 +59,10 @@ impl Points {
 
     /// Brings the places in the table of sites that will be asked for next into the cache, all at a time: in a large table
     /// each of them would have to be waited for.
-    pub(super) fn prefetch(&self, sites: &[Site]) {
+    pub(super) fn prefetch(&self, sites: impl Iterator<Item = Site>) {
         if !self.slots.is_empty() {
-            let seen = |site: &Site| self.slots[self.first_slot(rounded(*site))];
-            std::hint::black_box(sites.iter().fold(0, |all, site| all ^ seen(site)));
+            let seen = |site: Site| self.slots[self.first_slot(rounded(site))];
+            std::hint::black_box(sites.fold(0, |all, site| all ^ seen(site)));
         }
     }
 
@@ -183,7 +183,7 @@ impl Points {
                 known if self.rounded[known as usize] == rounded && is_same(known as usize) => {
                     return Ok(PointId(known));
                 }
-                _ => slot = (slot + 1) % self.slots.len(),
+                _ => slot = (slot + 1) & (self.slots.len() - 1),
             }
         }
     }
@@ -221,7 +221,7 @@ impl Points {
         for point in 0..self.rounded.len() {
             let mut slot = self.first_slot(self.rounded[point]);
             while self.slots[slot] != FREE {
-                slot = (slot + 1) % self.slots.len();
+                slot = (slot + 1) & (self.slots.len() - 1);
             }
             self.slots[slot] = point as u32;
         }

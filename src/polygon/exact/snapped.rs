@@ -27,14 +27,24 @@ impl Snapped {
 
     /// The lattice points nearest to some positions.
     pub fn add_all(&mut self, positions: &[Vec3]) -> Vec<PointId> {
+        self.add_each(positions, |snapped, _, position| snapped.add(position))
+    }
+
+    /// The points that `add` makes of some positions by their numbers, one after another. Most should be lattice points
+    /// near their positions: these are fetched ahead, many at a time.
+    pub(crate) fn add_each(
+        &mut self,
+        positions: &[Vec3],
+        mut add: impl FnMut(&mut Snapped, u32, Vec3) -> PointId,
+    ) -> Vec<PointId> {
         const TOGETHER: usize = 64;
         let mut all = Vec::with_capacity(positions.len());
-        let mut sites = Vec::with_capacity(TOGETHER);
         for group in positions.chunks(TOGETHER) {
-            sites.clear();
-            sites.extend(group.iter().map(|&p| self.lattice.snap(p)));
-            self.points.prefetch(&sites);
-            all.extend(sites.iter().zip(group).map(|(&site, &position)| self.add_at(site, position)));
+            self.points.prefetch(group.iter().map(|&p| self.lattice.snap(p)));
+            for &position in group {
+                let id = add(self, all.len() as u32, position);
+                all.push(id);
+            }
         }
         all
     }
