@@ -479,6 +479,14 @@ fn patches_with_poles_and_folds_are_followed() {
     }
 }
 
+/// Folded patches of degree 4 in these seeds were off by up to 81 % more than the tolerance between seven places.
+#[test]
+fn measured_distances_hold_between_the_places() {
+    for seed in [12, 17, 18] {
+        patches_stay_within_their_tolerance(seed, 20, &[Guarantee::Measured]);
+    }
+}
+
 #[allow(clippy::print_stdout, reason = "a campaign says what it found")]
 fn patches_stay_within_their_tolerance(seed: u64, count: u64, guarantees: &[Guarantee]) {
     let mut numbers = Numbers(seed);
@@ -495,9 +503,7 @@ fn patches_stay_within_their_tolerance(seed: u64, count: u64, guarantees: &[Guar
                 [made.error.bound.unwrap_or(f64::NAN), made.error.measured].map(|e| e / scale);
             let found = distances(&patch, &made, tolerance);
             let says = format!("{index} {guarantee:?}: {found:?} {measured} {bound} of {tolerance}");
-            // What is proven holds everywhere, what is measured where it was: between, it may be a little more.
-            let room = if guarantee == Guarantee::Proven { 1.0 } else { 1.02 };
-            assert!(measured <= tolerance && found.iter().all(|&d| d <= room * tolerance), "{says}");
+            assert!(measured <= tolerance && found.iter().all(|&d| d <= tolerance), "{says}");
             match guarantee {
                 Guarantee::Proven => {
                     assert!(
@@ -734,6 +740,69 @@ fn second_derivatives_across_surfaces_are_bounded() {
     }
 }
 
+/// Of every kind, each with a domain of [0, 1] but the last.
+const CLASSICS: [Classic; 9] = [
+    Classic::Plane { size: [2.0, 3.0] },
+    Classic::Sphere { radius: 1.3 },
+    Classic::Ellipsoid { radii: [1.0, 2.0, 1.5] },
+    Classic::Cylinder { radius: 1.5, height: 2.0 },
+    Classic::Cone { radius: 1.5, height: 2.0 },
+    Classic::Torus { major: 2.0, minor: 0.6 },
+    Classic::Moebius { radius: 2.0, width: 1.0 },
+    Classic::Klein { radius: 2.0, minor: 0.7 },
+    Classic::Helicoid { radius: 1.2, pitch: 2.0, turns: 1.5 },
+];
+
+#[test]
+fn classic_surfaces_bend_no_more_than_they_say() {
+    let mut numbers = Numbers(12);
+    for classic in CLASSICS.into_iter().chain([Classic::Enneper { reach: 1.0 }]) {
+        let domain = classic.domain();
+        for round in 0..60 {
+            let width = [0.3, 0.03][round % 2];
+            let part = domain.map(|[low, high]| {
+                let start = low + (1.0 - width) * (high - low) * numbers.unit();
+                [start, start + width * (high - low)]
+            });
+            let bends = classic.bends(part).unwrap();
+            let mut most = [0.0_f64; 3];
+            for k in 0..100 {
+                // The corners and borders of the part as well: there they are largest.
+                let at = [k % 10, k / 10].map(|i| f64::from(i) / 9.0);
+                let [u, v] = [0, 1].map(|k: usize| part[k][0] + at[k] * (part[k][1] - part[k][0]));
+                // Differences of differences, which are good to six places.
+                let jet = classic.jet(u, v);
+                let seconds = [jet.duu, jet.duv, jet.dvv];
+                let noise = 3e-4;
+                for (k, second) in seconds.iter().enumerate() {
+                    most[k] = most[k].max(second.length());
+                    assert!(
+                        second.length() <= bends.lengths[k] + noise,
+                        "{classic:?} {part:?} {k} {second} {bends:?}"
+                    );
+                }
+                let (Some(across), Some(normal)) = (bends.across, jet.normal()) else { continue };
+                assert!((normal - across.normal.direction).length() <= across.normal.spread + noise);
+                for (second, bound) in seconds.iter().zip(across.normal.bounds) {
+                    let along = second.dot(across.normal.direction).abs();
+                    assert!(along <= bound + noise, "{classic:?} {part:?} {along} {bound}");
+                }
+            }
+            // And hardly less: by how much they change over the part.
+            for (most, bound) in most.into_iter().zip(bends.lengths) {
+                assert!(
+                    bound <= (1.0 + 8.0 * width) * most + 400.0 * width,
+                    "{classic:?} {part:?} {most} {bound}"
+                );
+            }
+        }
+        let made = surface(&classic, &SurfaceOptions::within(0.05)).unwrap();
+        assert!(made.error.bound.is_some_and(|bound| bound <= 0.05), "{classic:?}");
+        // Distances are searched for, so a little too large.
+        assert!(made.error.measured <= 1.001 * made.error.bound.unwrap() + 1e-12, "{classic:?}");
+    }
+}
+
 #[test]
 fn spheres_take_few_triangles() {
     for (radius, tolerance) in [(1.0, 1e-2), (3.0, 1e-2), (1.0, 1e-3)] {
@@ -937,6 +1006,28 @@ fn surfaces_of_curves_close() {
     let skin = loft(&[section(0.0, 1.0), section(1.0, 2.0), section(2.0, 1.0)], false).unwrap();
     let vase = solid(&patches(&skin, &options).unwrap().mesh);
     assert!(vase.volume() > 2.0 * PI && vase.volume() < 8.0 * PI);
+}
+
+/// A profile that reaches beyond the middle of its closed path: three points of an edge had told too little, and what the
+/// edge missed could not be made up for inside.
+#[test]
+fn sweeps_beyond_the_middle_of_their_path_are_followed() {
+    let ring = |radius: f64| {
+        let corner = |k: u32| {
+            let (sine, cosine) = ogee::math::sin_cos_degrees(120.0 * f64::from(k));
+            radius * Vec2::new(cosine, sine)
+        };
+        [0, 1, 2].map(corner).to_vec()
+    };
+    for (path, profile, twist) in [(4.0, 4.0, 90.0_f64), (5.0, 6.5, 0.0)] {
+        let path: Vec<Vec3> = ring(path).iter().map(|p| p.extend(0.0)).collect();
+        let path = Spline::catmull_rom(&path, ogee::curve::Spacing::Centripetal, true).unwrap();
+        let profile = Spline::catmull_rom(&ring(profile), ogee::curve::Spacing::Centripetal, true).unwrap();
+        let sweep = Sweep::new(path, profile, twist.to_radians(), 1.0).unwrap();
+        let made = surface(&sweep, &SurfaceOptions::within(0.01)).unwrap();
+        assert!(made.error.measured <= 0.01);
+        assert!(Defects::of(&made.mesh).is_solid());
+    }
 }
 
 #[test]

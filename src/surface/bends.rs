@@ -1,6 +1,7 @@
 //! How parts of surfaces bend, in proven numbers.
 
-use crate::math::Vec3;
+use super::Surface;
+use crate::math::{Interval, Vec3};
 
 /// Proven bounds of the second derivatives over a part of the domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,4 +69,36 @@ impl Across {
             speeds: [least / most[1], least / most[0]],
         })
     }
+}
+
+/// Bounds over a part of the domain from the ranges of the second derivatives by uu, uv and vv, of each coordinate; `None`
+/// where lengths have none.
+pub(super) fn of_ranges(
+    surface: &dyn Surface,
+    part: [[f64; 2]; 2],
+    ranges: &[[Interval; 3]; 3],
+) -> Option<Bends> {
+    let lengths = lengths(ranges)?;
+    let [u, v] = part.map(|[low, high]| 0.5 * low + 0.5 * high);
+    let jet = surface.jet(u, v);
+    // From the middle of the part, half of its extents at most, with some room for the rounding of the slopes.
+    let [s, t] = part.map(|[low, high]| (0.5 + 1e-9) * (high - low));
+    let rounding = 1e-12 * (jet.du.length() + jet.dv.length());
+    let off = [lengths[0] * s + lengths[1] * t + rounding, lengths[1] * s + lengths[2] * t + rounding];
+    let along = |normal: Vec3| {
+        [0, 1, 2].map(|k: usize| {
+            let terms = [0, 1, 2].map(|axis: usize| ranges[axis][k] * Interval::point(normal[axis]));
+            (terms[0] + terms[1] + terms[2]).magnitude()
+        })
+    };
+    Some(Bends { lengths, across: Across::new([jet.du, jet.dv], off, along) })
+}
+
+/// Bounds of the lengths of vectors by the ranges of their components; `None` where they have none.
+pub(super) fn lengths(ranges: &[[Interval; 3]; 3]) -> Option<[f64; 3]> {
+    let bounds = [0, 1, 2].map(|k: usize| {
+        let squares = ranges.map(|components| components[k].magnitude()).map(|most| most * most);
+        squares.iter().sum::<f64>().sqrt() * (1.0 + 8.0 * f64::EPSILON)
+    });
+    bounds.iter().all(|bound| bound.is_finite()).then_some(bounds)
 }

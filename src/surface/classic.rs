@@ -1,4 +1,4 @@
-use super::{Gluing, Jet, Sides, Surface, SurfaceError};
+use super::{Bends, Gluing, Jet, Sides, Surface, SurfaceError, classic_bends, round_triangle};
 use crate::math::{Vec3, pow, sin_cos_degrees};
 use std::f64::consts::PI;
 
@@ -220,6 +220,21 @@ impl Surface for Classic {
             Classic::Moebius { .. } => Sides { u: Gluing::Twisted, ..Sides::OPEN },
             Classic::Klein { .. } => Sides { u: Gluing::Twisted, v: closed, poles: [false; 4] },
         }
+    }
+
+    /// In closed form; `None` for superellipsoids, whose second derivatives have no bounds.
+    fn second_bounds(&self, part: [[f64; 2]; 2]) -> Option<[f64; 3]> {
+        self.bends(part).map(|bends| bends.lengths)
+    }
+
+    /// For spheres and the mantles of cylinders and cones: projected from the middle, or straight from the axis, a triangle
+    /// covers its part of the surface.
+    fn triangle_bound(&self, corners: [Vec3; 3]) -> Option<f64> {
+        round_triangle::bound(self, corners)
+    }
+
+    fn bends(&self, part: [[f64; 2]; 2]) -> Option<Bends> {
+        classic_bends::bends(self, part)
     }
 
     fn creases(&self) -> [Vec<f64>; 2] {

@@ -1,4 +1,5 @@
-use super::{Across, Bends, Jet, Sides, Surface, SurfaceError};
+use super::bends::{lengths, of_ranges};
+use super::{Bends, Jet, Sides, Surface, SurfaceError};
 use crate::math::{Aabb, Interval, Vec3};
 use crate::sdf::{Expr, Field, Tape};
 
@@ -93,21 +94,7 @@ impl Surface for Formula {
     }
 
     fn bends(&self, part: [[f64; 2]; 2]) -> Option<Bends> {
-        let ranges = self.second_ranges(part)?;
-        let lengths = lengths(&ranges)?;
-        let [u, v] = part.map(|[low, high]| 0.5 * low + 0.5 * high);
-        let jet = self.jet(u, v);
-        // From the middle of the part, half of its extents at most, with some room for the rounding of the slopes.
-        let [s, t] = part.map(|[low, high]| (0.5 + 1e-9) * (high - low));
-        let rounding = 1e-12 * (jet.du.length() + jet.dv.length());
-        let off = [lengths[0] * s + lengths[1] * t + rounding, lengths[1] * s + lengths[2] * t + rounding];
-        let along = |normal: Vec3| {
-            [0, 1, 2].map(|k: usize| {
-                let terms = [0, 1, 2].map(|axis: usize| ranges[axis][k] * Interval::point(normal[axis]));
-                (terms[0] + terms[1] + terms[2]).magnitude()
-            })
-        };
-        Some(Bends { lengths, across: Across::new([jet.du, jet.dv], off, along) })
+        of_ranges(self, part, &self.second_ranges(part)?)
     }
 }
 
@@ -121,13 +108,4 @@ impl Formula {
         };
         Some([of(0)?, of(1)?, of(2)?])
     }
-}
-
-/// Bounds of the lengths of vectors by the ranges of their components; `None` where they have none.
-fn lengths(ranges: &[[Interval; 3]; 3]) -> Option<[f64; 3]> {
-    let bounds = [0, 1, 2].map(|k: usize| {
-        let squares = ranges.map(|components| components[k].magnitude()).map(|most| most * most);
-        squares.iter().sum::<f64>().sqrt() * (1.0 + 8.0 * f64::EPSILON)
-    });
-    bounds.iter().all(|bound| bound.is_finite()).then_some(bounds)
 }

@@ -24,6 +24,7 @@ mod area;
 mod b_spline;
 mod bends;
 mod classic;
+mod classic_bends;
 mod formula;
 mod frames;
 mod grid;
@@ -35,6 +36,7 @@ mod nearest;
 mod net;
 mod patch;
 mod rational;
+mod round_triangle;
 mod sides;
 mod skin;
 mod sweep;
@@ -51,6 +53,7 @@ pub use nearest::{Nearest, nearest};
 pub use patch::Patch;
 pub(crate) use patch::check_degrees;
 pub use rational::RationalPatch;
+pub(crate) use round_triangle::least_distance;
 pub use sides::{Gluing, Side, Sides};
 pub use skin::{Coons, Ruled, revolution};
 pub use sweep::{Sweep, Tube};
@@ -150,6 +153,13 @@ pub trait Surface: Sync {
     /// triangles where parameters are stretched unevenly.
     fn bends(&self, part: [[f64; 2]; 2]) -> Option<Bends> {
         self.second_bounds(part).map(|lengths| Bends { lengths, across: None })
+    }
+
+    /// A proven bound of the distance, both ways, between a flat triangle with its corners on the surface and the part of the
+    /// surface that it stands for, from the corners alone: for surfaces where there is a close one in closed form. `None` for
+    /// all triangles of other surfaces, infinite for triangles that stand for no part.
+    fn triangle_bound(&self, _corners: [Vec3; 3]) -> Option<f64> {
+        None
     }
 
     /// [`Surface::bends`] of all cells of a regular grid over the domain, v running fastest.

@@ -3,7 +3,7 @@
 use super::slide::{self, Turned};
 use super::table::Table;
 use crate::math::Vec3;
-use crate::surface::{Jet, Surface};
+use crate::surface::{Jet, Surface, least_distance};
 
 /// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
 pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
@@ -42,7 +42,7 @@ pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]
 
 /// Half the squared radius of the smallest circle around the triangle in a norm that bounds the second derivatives:
 /// `2 uv |du dv| <= uv (s du^2 + dv^2 / s)` for every s.
-fn bound_by([uu, uv, vv]: [f64; 3], parameters: &[[f64; 2]; 3]) -> f64 {
+pub(super) fn bound_by([uu, uv, vv]: [f64; 3], parameters: &[[f64; 2]; 3]) -> f64 {
     let with = |s: f64| {
         let scale = [(uu + s * uv).sqrt(), (vv + uv / s).sqrt()];
         0.5 * enclosing_radius_squared(parameters.map(|p| [p[0] * scale[0], p[1] * scale[1]]))
@@ -79,7 +79,7 @@ fn enclosing_radius_squared([p, q, r]: [[f64; 2]; 3]) -> f64 {
 }
 
 /// Barycentric coordinates where distances are measured.
-const PLACES: [[f64; 3]; 7] = [
+pub(super) const PLACES: [[f64; 3]; 7] = [
     [0.5, 0.5, 0.0],
     [0.0, 0.5, 0.5],
     [0.5, 0.0, 0.5],
@@ -89,25 +89,31 @@ const PLACES: [[f64; 3]; 7] = [
     [0.2, 0.2, 0.6],
 ];
 
-/// Distances of the places of a triangle from points of the surface.
-pub(super) type Distances = [f64; PLACES.len()];
+/// Barycentric coordinates of the corners of so many small triangles along each side, without the three of the whole.
+pub(super) fn places(steps: usize) -> Vec<[f64; 3]> {
+    let rows = (0..=steps).flat_map(|i| (0..=steps - i).map(move |j| [i, j, steps - i - j]));
+    let inner = rows.filter(|all| all.iter().all(|&k| k < steps));
+    inner.map(|all| all.map(|k| k as f64 / steps as f64)).collect()
+}
 
-/// Distances of the places of many triangles: from the surface at the same parameters, and where these are above `enough`
-/// for the triangle, from the points that a step along the surface leads to when they are nearer.
+/// Distances of the places of many triangles, those of a triangle together: from the surface at the same parameters, and
+/// where these are above `enough` for the triangle, from the points that a step along the surface leads to when they are
+/// nearer.
 pub(super) fn distances(
     surface: &dyn Surface,
+    places: &[[f64; 3]],
     parameters: &[[[f64; 2]; 3]],
     corners: &[[Vec3; 3]],
     enough: impl Fn(usize) -> f64,
-) -> Vec<Distances> {
-    const COUNT: usize = PLACES.len();
+) -> Vec<f64> {
+    let count = places.len();
     let at: Vec<[f64; 2]> =
-        parameters.iter().flat_map(|own| PLACES.map(|weights| mixed(weights, own))).collect();
-    let place = |k: usize| self::place(PLACES[k % COUNT], &corners[k / COUNT]);
+        parameters.iter().flat_map(|own| places.iter().map(|&weights| mixed(weights, own))).collect();
+    let place = |k: usize| self::place(places[k % count], &corners[k / count]);
     let mut points = vec![Vec3::ZERO; at.len()];
     surface.points(&at, &mut points);
     let mut all: Vec<f64> = (0..at.len()).map(|k| (place(k) - points[k]).length()).collect();
-    let far: Vec<usize> = (0..at.len()).filter(|&k| all[k] > enough(k / COUNT)).collect();
+    let far: Vec<usize> = (0..at.len()).filter(|&k| all[k] > enough(k / count)).collect();
     let from: Vec<[f64; 2]> = far.iter().map(|&k| at[k]).collect();
     let mut tangents = vec![[Vec3::ZERO; 3]; far.len()];
     surface.tangents(&from, &mut tangents);
@@ -119,7 +125,7 @@ pub(super) fn distances(
     for (&k, point) in far.iter().zip(nearer) {
         all[k] = all[k].min((place(k) - *point).length());
     }
-    all.as_chunks::<COUNT>().0.to_vec()
+    all
 }
 
 /// Parameters nearer to a place by one Gauss-Newton step, within the domain; the same where there is none.
@@ -151,14 +157,15 @@ fn place(weights: [f64; 3], corners: &[Vec3; 3]) -> Vec3 {
 /// What is not above `known` is not looked at closely: the result is at least that, and right where it is larger.
 pub(super) fn measure(
     surface: &dyn Surface,
+    places: &[[f64; 3]],
     parameters: &[[f64; 2]; 3],
     corners: [Vec3; 3],
-    found: &Distances,
+    found: &[f64],
     known: f64,
 ) -> f64 {
     let domain = surface.domain();
     let mut most = known;
-    for (weights, distance) in PLACES.into_iter().zip(found) {
+    for (&weights, distance) in places.iter().zip(found) {
         if *distance <= most {
             continue;
         }
@@ -166,6 +173,43 @@ pub(super) fn measure(
         // NaN must not pass for small.
         if near.is_nan() {
             return near;
+        }
+        most = most.max(near);
+    }
+    most
+}
+
+/// The largest of the distances found at places of a triangle that are above what is known, looked at closely. Along a fold
+/// parameters run unevenly: a place may be near the surface, and the point at its parameters near the triangle, though they
+/// are not near each other.
+pub(super) fn closely(
+    surface: &dyn Surface,
+    places: &[[f64; 3]],
+    parameters: &[[f64; 2]; 3],
+    corners: [Vec3; 3],
+    found: &[f64],
+    known: f64,
+) -> f64 {
+    let domain = surface.domain();
+    let at: Vec<[f64; 2]> = places.iter().map(|&weights| mixed(weights, parameters)).collect();
+    let mut points = vec![Vec3::ZERO; at.len()];
+    surface.points(&at, &mut points);
+    let mut most = known;
+    for (k, &distance) in found.iter().enumerate() {
+        if distance <= known {
+            continue;
+        }
+        let place = place(places[k], &corners);
+        let own = distance.min(distance_from(surface, domain, place, at[k]));
+        let nearest =
+            |a: &usize, b: &usize| points[*a].distance(place).total_cmp(&points[*b].distance(place));
+        let start = (0..at.len()).min_by(nearest).unwrap_or(k);
+        let there = distance_from(surface, domain, place, at[start]);
+        let back = least_distance(corners.map(|corner| corner - points[k]));
+        let near = own.min(there.max(back));
+        // NaN must not pass for small.
+        if near.is_nan() {
+            return f64::INFINITY;
         }
         most = most.max(near);
     }

@@ -296,7 +296,7 @@ fn holds(curve: &Curve<'_>, asked: &Asked<'_>, met: &[Interval], [a, b]: [f64; 2
     }
 }
 
-/// The largest distance of three points of the curve from a chord, or from their places on it.
+/// The largest distance of seven points of the curve from a chord, or from their places on it.
 fn deviation(curve: &Curve<'_>, [a, b]: [f64; 2], by_place: bool) -> f64 {
     let (from, to) = (curve.point(a), curve.point(b));
     let chord = to - from;
@@ -305,5 +305,5 @@ fn deviation(curve: &Curve<'_>, [a, b]: [f64; 2], by_place: bool) -> f64 {
         let along = (off.dot(chord) / chord.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         (off - if by_place { share } else { along } * chord).length()
     };
-    [0.25, 0.5, 0.75].map(distance).into_iter().fold(0.0, f64::max)
+    (1..8).map(|k| distance(f64::from(k) / 8.0)).fold(0.0, f64::max)
 }

@@ -1,5 +1,6 @@
 //! One piece: rows, then better triangles where some fail.
 
+use super::check::PLACES;
 use super::edge::Edges;
 use super::frame::{Frame, Local, Node};
 use super::layout::{Layout, Piece};
@@ -143,10 +144,10 @@ fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> 
         corners.push(refinement.corners(triangle));
     }
     made.measured = refinement.known_distance().unwrap_or_else(|| {
-        let found = check::distances(surface, &made.parameters, &corners, |_| 0.0);
-        let beyond =
-            |known: f64, t: usize| check::measure(surface, &made.parameters[t], corners[t], &found[t], known);
-        (0..found.len()).fold(0.0, beyond)
+        let found = check::distances(surface, &PLACES, &made.parameters, &corners, |_| 0.0);
+        found.chunks(PLACES.len()).enumerate().fold(0.0, |known: f64, (t, found)| {
+            check::measure(surface, &PLACES, &made.parameters[t], corners[t], found, known)
+        })
     });
     made
 }

@@ -2,8 +2,9 @@
 //! those neighbours first whose longest edge it is not (Rivara, New longest-edge algorithms for the refinement and/or
 //! improvement of unstructured triangulations, 1997).
 
+use super::check::PLACES;
 use super::frame::{FINEST, Local, Node, settled, turns_left};
-use super::table::Table;
+use super::table::{MOST_STEPS, Table};
 use super::{Care, TessellationError, check};
 use crate::math::Vec3;
 use crate::mesh::Topology;
@@ -19,6 +20,7 @@ const FLAT: f64 = 1e-9;
 /// No flip makes triangles as thin askew: split again, they would become flat.
 const THINNEST: f64 = 1e-3;
 
+#[derive(Clone)]
 pub(super) struct Refinement<'a> {
     surface: &'a dyn Surface,
     table: &'a Table,
@@ -69,21 +71,89 @@ impl<'a> Refinement<'a> {
         let parameters: Vec<_> = self.triangles.iter().map(|&triangle| self.parameters(triangle)).collect();
         let corners: Vec<_> = self.triangles.iter().map(|&triangle| self.corners(triangle)).collect();
         let enough = |t: usize| SURE * self.allowed(&parameters[t]);
-        let found = check::distances(self.surface, &parameters, &corners, enough);
-        (0..found.len()).map(|t| self.measured(&parameters[t], corners[t], &found[t])).collect()
+        let found = check::distances(self.surface, &PLACES, &parameters, &corners, enough);
+        let each = found.chunks(PLACES.len()).enumerate();
+        each.map(|(t, found)| self.measured(&parameters[t], corners[t], found)).collect()
     }
 
-    /// Mends until every triangle passes.
+    /// Mends until every triangle passes, between its places too.
     pub(super) fn run(&mut self, care: Care, room: u64) -> Result<(), Stopped> {
         if let Some(place) = self.positions.iter().position(|point| !point.is_finite()) {
             return Err(Stopped::NotFinite(self.nodes[place].at));
         }
-        let mut pending: Vec<u32> = (0..self.triangles.len() as u32).rev().collect();
+        let all = (0..self.triangles.len() as u32).rev().collect();
+        self.mend(all, !care.by_place, care, room)?;
+        if self.table.proven {
+            return Ok(());
+        }
+        self.mend_between(care, room);
+        Ok(())
+    }
+
+    /// Mends what fails between the usual places, where that can be done.
+    fn mend_between(&mut self, care: Care, room: u64) {
+        /// Few triangles fail; where mending takes more than this, distances are not found, as along the crease of a fold.
+        const MORE: u64 = 256;
+        let count = self.triangles.len() as u64;
+        let room = room.min(count + count / 2 + MORE);
+        let mut seen: Vec<[Local; 3]> = Vec::new();
+        loop {
+            seen.resize(self.triangles.len(), [0; 3]);
+            let is_new = |&t: &u32| self.triangles[t as usize] != seen[t as usize];
+            let new: Vec<u32> = (0..self.triangles.len() as u32).filter(is_new).collect();
+            let failing = self.failing_between(&new);
+            if failing.is_empty() {
+                return;
+            }
+            let before = self.clone();
+            seen.copy_from_slice(&self.triangles);
+            failing.iter().for_each(|&(t, ratio)| self.ratios[t as usize] = ratio);
+            // No flips: they compare what is found at the usual places, and could undo each other where more is known.
+            if self.mend(failing.into_iter().map(|(t, _)| t).collect(), false, care, room).is_err() {
+                *self = before;
+                return;
+            }
+        }
+    }
+
+    /// Those of some triangles that fail at so many places that the bends of the surface leave no more than is kept back for
+    /// what lies between them, with the largest distance over what is allowed.
+    fn failing_between(&self, triangles: &[u32]) -> Vec<(u32, f64)> {
+        let own = |t: u32| {
+            let triangle = self.triangles[t as usize];
+            (self.parameters(triangle), self.corners(triangle))
+        };
+        let steps = |&t: &u32| self.table.steps(&own(t).0, 1.0 - MEASURED_SHARE);
+        let steps: Vec<usize> = triangles.iter().map(steps).collect();
+        let mut failing = Vec::new();
+        for count in 2..=MOST_STEPS {
+            let with: Vec<u32> =
+                (0..steps.len()).filter(|&k| steps[k] == count).map(|k| triangles[k]).collect();
+            let (parameters, corners): (Vec<_>, Vec<_>) = with.iter().map(|&t| own(t)).unzip();
+            let allowed: Vec<f64> = parameters.iter().map(|own| self.allowed(own)).collect();
+            let places = check::places(count);
+            let found = check::distances(self.surface, &places, &parameters, &corners, |k| allowed[k]);
+            for (k, found) in found.chunks(places.len()).enumerate() {
+                if found.iter().all(|&distance| distance <= allowed[k]) {
+                    continue;
+                }
+                let most =
+                    check::closely(self.surface, &places, &parameters[k], corners[k], found, allowed[k]);
+                if most > allowed[k] {
+                    failing.push((with[k], most / allowed[k]));
+                }
+            }
+        }
+        failing
+    }
+
+    /// Flips and splits until some triangles and what is made of them pass.
+    fn mend(&mut self, mut pending: Vec<u32>, flips: bool, care: Care, room: u64) -> Result<(), Stopped> {
         while let Some(t) = pending.pop() {
             if self.ratios[t as usize] <= 1.0 {
                 continue;
             }
-            let better = || if care.by_place { None } else { self.better_flip(t) };
+            let better = || if flips { self.better_flip(t) } else { None };
             let flip = self.flip_of_thin(t).or_else(better);
             let touched = match flip {
                 Some(half_edge) => self.flip(half_edge).to_vec(),
@@ -108,13 +178,18 @@ impl<'a> Refinement<'a> {
     fn ratio(&self, triangle: [Local; 3]) -> f64 {
         let parameters = self.parameters(triangle);
         if self.table.proven {
-            let ratio = check::bound(self.table, self.surface, &parameters);
+            let ratio = if self.table.closed_form {
+                let bound = self.surface.triangle_bound(self.corners(triangle));
+                bound.unwrap_or(f64::INFINITY) / self.table.tolerance(&parameters)
+            } else {
+                check::bound(self.table, self.surface, &parameters)
+            };
             return if ratio.is_nan() { f64::INFINITY } else { ratio };
         }
         let corners = self.corners(triangle);
         let enough = SURE * self.allowed(&parameters);
-        let found = check::distances(self.surface, &[parameters], &[corners], |_| enough);
-        self.measured(&parameters, corners, &found[0])
+        let found = check::distances(self.surface, &PLACES, &[parameters], &[corners], |_| enough);
+        self.measured(&parameters, corners, &found)
     }
 
     /// What measured distances of a triangle may be.
@@ -123,9 +198,10 @@ impl<'a> Refinement<'a> {
     }
 
     /// The largest distance found over what is allowed.
-    fn measured(&self, parameters: &[[f64; 2]; 3], corners: [Vec3; 3], found: &check::Distances) -> f64 {
+    fn measured(&self, parameters: &[[f64; 2]; 3], corners: [Vec3; 3], found: &[f64]) -> f64 {
         let allowed = self.allowed(parameters);
-        let ratio = check::measure(self.surface, parameters, corners, found, SURE * allowed) / allowed;
+        let known = SURE * allowed;
+        let ratio = check::measure(self.surface, &PLACES, parameters, corners, found, known) / allowed;
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 

@@ -1,11 +1,15 @@
 //! How a piece bends, cell by cell: what its density of vertices and the check of its triangles come from.
 
 use super::slide::{Free, Slides, Turned};
-use super::{Guarantee, Precision, SurfaceOptions, TessellationError};
+use super::{Guarantee, Precision, SurfaceOptions, TessellationError, check};
 use crate::surface::{Bends, Jet, Side, Surface};
 
 /// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
 const CELLS: [usize; 2] = [12, 32];
+/// Cells an axis for bounds that only say where to measure.
+const COARSE: usize = 4;
+/// Most parts of a side of a triangle that is measured closely.
+pub(super) const MOST_STEPS: usize = 12;
 /// Share of the mixed derivative that counts as bending along an axis that has none of its own.
 const LEAST_SHARE: f64 = 0.1;
 
@@ -15,12 +19,16 @@ pub(super) struct Table {
     /// Second derivatives over tolerance, by uu, uv, vv.
     bends: Vec<[f64; 3]>,
     tolerances: Vec<f64>,
+    /// Bounds that say where to measure, where nothing is proven by them.
+    lengths: Option<Lengths>,
     /// Where distances may be measured to other parameters than those of the triangle.
     slides: Slides,
     /// Segments that a length of 1 along u, and along v, needs.
     densities: Vec<[f64; 2]>,
-    /// Whether the bends are bounds.
+    /// Whether distances are bounds.
     pub(super) proven: bool,
+    /// Whether these come from the corners of triangles alone.
+    pub(super) closed_form: bool,
 }
 
 impl Table {
@@ -39,7 +47,10 @@ impl Table {
             let (i, j) = (k / cells[1], k % cells[1]);
             surface.bends([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
         };
+        let closed_form = options.guarantee == Guarantee::Proven
+            && surface.triangle_bound([surface.point(at(0, 0), at(1, 0)); 3]).is_some();
         let bounds: Option<Vec<Bends>> = match options.guarantee {
+            Guarantee::Proven if closed_form => None,
             Guarantee::Proven if domain == surface.domain() => surface.bends_table(cells),
             Guarantee::Proven => (0..cells[0] * cells[1]).map(part).collect(),
             Guarantee::Measured => None,
@@ -50,9 +61,14 @@ impl Table {
             cells,
             bends: Vec::new(),
             tolerances: Vec::new(),
+            lengths: match options.guarantee {
+                Guarantee::Proven => None,
+                Guarantee::Measured => Lengths::bounds(surface, domain),
+            },
             slides: Slides::default(),
             densities: Vec::new(),
-            proven: bounds.is_some(),
+            proven: bounds.is_some() || closed_form,
+            closed_form,
         };
         let (mut turned, mut turns): (Vec<Option<Turned>>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
         for cell in 0..cells[0] * cells[1] {
@@ -101,11 +117,28 @@ impl Table {
         [0.5 * along_u.sqrt(), 0.5 * along_v.sqrt()]
     }
 
+    /// How many parts a side of a triangle must have for distances at the corners of the parts to tell those between them up
+    /// to a share of the tolerance: 0 where corners of the whole do or no bounds are known, no more than [`MOST_STEPS`].
+    pub(super) fn steps(&self, parameters: &[[f64; 2]; 3], share: f64) -> usize {
+        let Some(lengths) = &self.lengths else { return 0 };
+        let bends = lengths.around(self.met_of([COARSE; 2], parameters));
+        let whole = check::bound_by(bends, parameters) / self.tolerance(parameters);
+        if whole <= 1.0 {
+            return 0;
+        }
+        // What lies between shrinks with the square of the parts; NaN asks for the most.
+        (whole / share).sqrt().ceil().min(MOST_STEPS as f64) as usize
+    }
+
     /// Cells that the box of some parameters meets, as ranges of indices.
     pub(super) fn met(&self, parameters: &[[f64; 2]; 3]) -> [[usize; 2]; 2] {
+        self.met_of(self.cells, parameters)
+    }
+
+    fn met_of(&self, cells: [usize; 2], parameters: &[[f64; 2]; 3]) -> [[usize; 2]; 2] {
         [0, 1].map(|axis: usize| {
             let [low, high] = self.domain[axis];
-            let count = self.cells[axis];
+            let count = cells[axis];
             let index = |t: f64| (((t - low) / (high - low) * count as f64) as usize).min(count - 1);
             let all = parameters.map(|p| p[axis]);
             let least = all.into_iter().fold(f64::INFINITY, f64::min);
@@ -174,6 +207,29 @@ impl Table {
         let [[i, _], [j, _]] = self.met(&[middle; 3]);
         let along = [0, 1].map(|axis: usize| (to[axis] - from[axis]) * self.density(i, j, axis));
         along[0] * along[0] + along[1] * along[1]
+    }
+}
+
+/// Bounds of the lengths of second derivatives by uu, uv and vv, on a coarse grid of cells.
+struct Lengths(Vec<[f64; 3]>);
+
+impl Lengths {
+    fn bounds(surface: &dyn Surface, domain: [[f64; 2]; 2]) -> Option<Lengths> {
+        let at = |axis: usize, k: usize| {
+            let [low, high] = domain[axis];
+            if k == COARSE { high } else { low + (high - low) * k as f64 / COARSE as f64 }
+        };
+        let cell = |k: usize| {
+            let (i, j) = (k / COARSE, k % COARSE);
+            surface.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
+        };
+        (0..COARSE * COARSE).map(cell).collect::<Option<Vec<_>>>().map(Lengths)
+    }
+
+    /// The largest in a range of cells.
+    fn around(&self, [[i0, i1], [j0, j1]]: [[usize; 2]; 2]) -> [f64; 3] {
+        let cells = (i0..=i1).flat_map(|i| (j0..=j1).map(move |j| i * COARSE + j));
+        cells.fold([0.0; 3], |most, cell| [0, 1, 2].map(|k: usize| most[k].max(self.0[cell][k])))
     }
 }
 
