@@ -8,6 +8,7 @@ mod faces;
 mod flush;
 mod leaf;
 mod make;
+mod meeting;
 pub(super) mod plan;
 pub(super) mod print;
 pub(super) mod reach;

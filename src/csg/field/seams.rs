@@ -6,8 +6,9 @@
 //! not be a sound solid afterwards stays as it was.
 
 use super::faces::{FLAT, Faces};
+use super::meeting::{BESIDE, Piece, Sheet};
 use crate::math::Vec3;
-use crate::mesh::{Mesh, Solid, crossing_pairs};
+use crate::mesh::{Mesh, Solid, Topology, crossing_pairs};
 
 /// What became of the vertices on seams.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,19 +70,8 @@ const MOST_GROWTH: usize = 4;
 /// How near to the curve the middle of an edge must be, in tolerances.
 const NEAR: f64 = 0.9;
 
-/// Sine of the least angle at which surfaces are said to cut each other.
-const LEAST_SINE: f64 = 0.02;
-
 /// Gradients with a larger cosine belong to one smooth piece of a surface.
 const SMOOTH: f64 = 0.9;
-
-/// How far beside a point slopes are taken, as a part of the way to the middle of a triangle: first, and where the point
-/// is known well. The error of the surface taken for flat is quadratic in it.
-const BESIDE: f64 = 1e-3;
-const HARDLY_BESIDE: f64 = 1e-7;
-
-/// The part of the tolerances up to which Newton's method goes on.
-const NEARLY: f64 = 1e-9;
 
 /// Normals with a larger cosine belong to one plane, up to rounding.
 const ONE_PLANE: f64 = 1.0 - 1e-9;
@@ -95,24 +85,6 @@ struct Cloth<'a> {
     mesh: Mesh,
     twins: Vec<u32>,
     parents: Vec<u32>,
-}
-
-/// One of the surfaces that meet at a point, straightened: the points p with normal . p = offset.
-#[derive(Clone, Copy)]
-struct Sheet {
-    normal: Vec3,
-    offset: f64,
-}
-
-/// A smooth piece of a surface, or a flat face, near a point.
-#[derive(Clone, Copy)]
-enum Piece {
-    /// A surface on the side of a point, where its gradient is taken: at a kink that differs from the other side's.
-    Curved {
-        surface: u32,
-        toward: Vec3,
-    },
-    Flat(Sheet),
 }
 
 impl Cloth<'_> {
@@ -160,7 +132,7 @@ impl Cloth<'_> {
         let mut at = half_edge;
         loop {
             around.push(at / 3);
-            at = self.twins[previous(at) as usize];
+            at = self.twins[Topology::previous(at) as usize];
             if at == half_edge {
                 return around;
             }
@@ -175,7 +147,7 @@ impl Cloth<'_> {
     fn target(&self, half_edge: u32) -> Option<Vec3> {
         let place = self.position(self.start(half_edge));
         let pieces = self.pieces(&self.around(half_edge), place)?;
-        self.meeting(&pieces, place)
+        self.faces.meeting(&pieces, place)
     }
 
     /// The pieces that some triangles at a point stand for; `None` where there are more than three.
@@ -190,7 +162,7 @@ impl Cloth<'_> {
                 let toward = centroid(&self.mesh.corners(triangle as usize));
                 Piece::Curved { surface: face, toward }
             };
-            let normal = self.sheet(&piece, place, BESIDE)?.normal;
+            let normal = self.faces.sheet(&piece, place, BESIDE)?.normal;
             let alike = if face == FLAT { ONE_PLANE } else { SMOOTH };
             let is_known = |known: &(Piece, u32, Vec3)| known.1 == face && known.2.dot(normal) > alike;
             if !pieces.iter().any(is_known) {
@@ -198,60 +170,6 @@ impl Cloth<'_> {
             }
         }
         (pieces.len() <= 3).then(|| pieces.into_iter().map(|(piece, ..)| piece).collect())
-    }
-
-    /// A piece near a point as a plane: that at a part of the way from there to the middle of a triangle on the piece.
-    fn sheet(&self, piece: &Piece, point: Vec3, part: f64) -> Option<Sheet> {
-        match *piece {
-            Piece::Flat(sheet) => Some(sheet),
-            Piece::Curved { surface, toward } => {
-                let beside = point + part * (toward - point);
-                let (value, gradient) = self.faces.surfaces[surface as usize].gradient(beside);
-                let slope = gradient.length();
-                let normal = gradient / slope;
-                let offset = normal.dot(beside) - value / slope;
-                (normal.is_finite() && offset.is_finite()).then_some(Sheet { normal, offset })
-            }
-        }
-    }
-
-    /// The point of all pieces nearest to a place, by Newton's method: the least step onto all sheets, again and again.
-    fn meeting(&self, pieces: &[Piece], place: Vec3) -> Option<Vec3> {
-        const STEPS: usize = 16;
-        let tolerance = |piece: &Piece| match *piece {
-            Piece::Curved { surface, .. } => self.faces.surfaces[surface as usize].tolerance,
-            Piece::Flat(_) => 0.0,
-        };
-        let off: f64 = pieces.iter().map(tolerance).sum();
-        let mut point = place;
-        for step in 0..STEPS {
-            // At first the point may be on the wrong side of a kink.
-            let part = if step < 2 { BESIDE } else { HARDLY_BESIDE };
-            let sheets: Option<Vec<Sheet>> =
-                pieces.iter().map(|piece| self.sheet(piece, point, part)).collect();
-            let (step, sine) = least_step(&sheets?, point)?;
-            point += step;
-            if sine < LEAST_SINE || point.distance(place) > 2.0 * off / sine {
-                return None;
-            }
-            if part == HARDLY_BESIDE && step.length() <= NEARLY * off {
-                break;
-            }
-        }
-        // What is flat along an axis stays so to the bit.
-        let sheets: Option<Vec<Sheet>> =
-            pieces.iter().map(|piece| self.sheet(piece, point, HARDLY_BESIDE)).collect();
-        for Sheet { normal, offset } in sheets? {
-            if (normal.dot(point) - offset).abs() > NEARLY * off {
-                return None;
-            }
-            for axis in (0..3).filter(|&axis| normal[axis].abs() == 1.0) {
-                if (point[axis] - place[axis]).abs() <= NEARLY * off {
-                    point[axis] = place[axis];
-                }
-            }
-        }
-        Some(point)
     }
 
     /// Moves the starts of half-edges to their targets. Triangles that would be folded or too far from their surfaces are
@@ -329,9 +247,9 @@ impl Cloth<'_> {
         if face == FLAT || face != self.face(n) {
             return false;
         }
-        let [a, b] = [half_edge, previous(half_edge)].map(|h| self.start(h));
-        let [c, d] = [twin, previous(twin)].map(|h| self.start(h));
-        let around_b = self.around(previous(half_edge));
+        let [a, b] = [half_edge, Topology::previous(half_edge)].map(|h| self.start(h));
+        let [c, d] = [twin, Topology::previous(twin)].map(|h| self.start(h));
+        let around_b = self.around(Topology::previous(half_edge));
         if around_b.iter().any(|&t| self.mesh.triangles[t as usize].contains(&d)) {
             return false;
         }
@@ -344,8 +262,8 @@ impl Cloth<'_> {
             return false;
         }
         let outer = |h: u32| self.twins[h as usize];
-        let [cb, ba] = [outer(next(half_edge)), outer(previous(half_edge))];
-        let [ad, dc] = [outer(next(twin)), outer(previous(twin))];
+        let [cb, ba] = [outer(Topology::next(half_edge)), outer(Topology::previous(half_edge))];
+        let [ad, dc] = [outer(Topology::next(twin)), outer(Topology::previous(twin))];
         [self.mesh.triangles[t as usize], self.mesh.triangles[n as usize]] = new;
         for (x, y) in [(3 * t, ad), (3 * t + 1, 3 * n + 2), (3 * t + 2, ba), (3 * n, dc), (3 * n + 1, cb)] {
             self.twins[x as usize] = y;
@@ -425,7 +343,7 @@ impl Cloth<'_> {
             FLAT => f64::INFINITY,
             surface => self.faces.surfaces[surface as usize].tolerance,
         });
-        let target = self.meeting(&self.pieces(&[half_edge / 3, twin / 3], middle)?, middle)?;
+        let target = self.faces.meeting(&self.pieces(&[half_edge / 3, twin / 3], middle)?, middle)?;
         (target.distance(middle) > NEAR * tolerance[0].min(tolerance[1])).then_some(target)
     }
 
@@ -493,38 +411,4 @@ fn area_vector(&[a, b, c]: &[Vec3; 3]) -> Vec3 {
 
 fn centroid(&[a, b, c]: &[Vec3; 3]) -> Vec3 {
     (a + b + c) / 3.0
-}
-
-/// The half-edge after another one in its triangle.
-fn next(half_edge: u32) -> u32 {
-    if half_edge % 3 == 2 { half_edge - 2 } else { half_edge + 1 }
-}
-
-/// The half-edge before another one in its triangle.
-fn previous(half_edge: u32) -> u32 {
-    if half_edge % 3 == 0 { half_edge + 2 } else { half_edge - 1 }
-}
-
-/// The least step from a point onto up to three planes, and the sine of the angle at which they cut each other (for three
-/// the product of two such); `None` where they do not.
-fn least_step(sheets: &[Sheet], point: Vec3) -> Option<(Vec3, f64)> {
-    let away = |sheet: &Sheet| sheet.offset - sheet.normal.dot(point);
-    match *sheets {
-        [] => None,
-        [a] => Some((away(&a) * a.normal, 1.0)),
-        [a, b] => {
-            let along = a.normal.cross(b.normal);
-            let sine = along.length();
-            let step = (away(&a) * b.normal.cross(along) + away(&b) * along.cross(a.normal)) / (sine * sine);
-            step.is_finite().then_some((step, sine))
-        }
-        [a, b, c, ..] => {
-            let volume = a.normal.dot(b.normal.cross(c.normal));
-            let step = (away(&a) * b.normal.cross(c.normal)
-                + away(&b) * c.normal.cross(a.normal)
-                + away(&c) * a.normal.cross(b.normal))
-                / volume;
-            step.is_finite().then_some((step, volume.abs()))
-        }
-    }
 }
