@@ -76,8 +76,8 @@ const SMOOTH: f64 = 0.9;
 /// Normals with a larger cosine belong to one plane, up to rounding.
 const ONE_PLANE: f64 = 1.0 - 1e-9;
 
-/// Rounds of taking back what does no good.
-const PATIENCE: usize = 8;
+/// Rounds of leaving out what does no good.
+const PATIENCE: usize = 16;
 
 /// A mesh that is being changed.
 struct Cloth<'a> {
@@ -172,49 +172,53 @@ impl Cloth<'_> {
         (pieces.len() <= 3).then(|| pieces.into_iter().map(|(piece, ..)| piece).collect())
     }
 
-    /// Moves the starts of half-edges to their targets. Triangles that would be folded or too far from their surfaces are
-    /// flipped away, and where that does not help, vertices are put back. Tells how many were moved.
+    /// Moves the starts of half-edges to their targets. Where triangles would be folded, too far from their surfaces, or
+    /// pass through others, it is done again without the vertices there. Tells how many were moved.
     fn pull(&mut self, targets: &[(u32, Option<Vec3>)]) -> usize {
-        let before = (self.mesh.clone(), self.twins.clone());
-        let mut moves: Vec<Move> = Vec::new();
-        let mut touched: Vec<u32> = Vec::new();
-        for &(half_edge, target) in targets {
-            let Some(to) = target else { continue };
-            touched.extend(self.around(half_edge));
-            let vertex = self.start(half_edge);
-            moves.push(Move { vertex, from: self.position(vertex), to });
+        let movement = |&(half_edge, to): &(u32, Option<Vec3>)| {
+            Some(Move { half_edge, vertex: self.start(half_edge), to: to? })
+        };
+        let mut moves: Vec<Move> = targets.iter().filter_map(movement).collect();
+        for attempt in 0..PATIENCE {
+            let before = (self.mesh.clone(), self.twins.clone());
+            let bad = self.moved_badly(&moves);
+            if bad.is_empty() {
+                return moves.len();
+            }
+            let mut corners: Vec<u32> =
+                bad.iter().flat_map(|&triangle| self.mesh.triangles[triangle as usize]).collect();
+            corners.sort_unstable();
+            (self.mesh, self.twins) = before;
+            let count = moves.len();
+            let is_corner = |vertex: &u32| corners.binary_search(vertex).is_ok();
+            moves.retain(|m| !is_corner(&m.vertex));
+            // What is bad may be so since something beside it was moved.
+            if moves.len() == count || attempt > PATIENCE / 2 {
+                let is_beside = |m: &Move| {
+                    let around = self.around(m.half_edge);
+                    around.iter().any(|&t| self.mesh.triangles[t as usize].iter().any(is_corner))
+                };
+                moves.retain(|m| !is_beside(m));
+            }
+            if moves.len() == count {
+                break;
+            }
         }
+        0
+    }
+
+    /// Moves vertices and flips edges where that is needed; triangles that are not as they should be after it.
+    fn moved_badly(&mut self, moves: &[Move]) -> Vec<u32> {
+        let mut touched: Vec<u32> = moves.iter().flat_map(|m| self.around(m.half_edge)).collect();
         touched.sort_unstable();
         touched.dedup();
         let old = |&t: &u32| Old { triangle: t, area: self.area_vector(t), distance: self.distance(t) };
         let mut old: Vec<Old> = touched.iter().map(old).collect();
-        moves.sort_by_key(|m| m.vertex);
         moves.iter().for_each(|m| self.mesh.positions[m.vertex as usize] = m.to);
-        for _ in 0..PATIENCE {
-            self.flip_unsound(&mut old);
-            let mut bad: Vec<u32> =
-                old.iter().filter(|old| !self.is_sound_still(old)).map(|old| old.triangle).collect();
-            if bad.is_empty() {
-                bad.extend(crossing_pairs(&self.mesh, &touched).into_iter().flatten());
-            }
-            if bad.is_empty() {
-                return moves.len();
-            }
-            let corners = bad.iter().flat_map(|&t| self.mesh.triangles[t as usize]);
-            let mut back: Vec<usize> =
-                corners.filter_map(|v| moves.binary_search_by_key(&v, |m| m.vertex).ok()).collect();
-            back.sort_unstable_by(|a, b| b.cmp(a));
-            back.dedup();
-            if back.is_empty() {
-                break;
-            }
-            for index in back {
-                let Move { vertex, from, .. } = moves.remove(index);
-                self.mesh.positions[vertex as usize] = from;
-            }
-        }
-        (self.mesh, self.twins) = before;
-        0
+        self.flip_unsound(&mut old);
+        let unsound = old.iter().filter(|old| !self.is_sound_still(old));
+        let bad: Vec<u32> = unsound.map(|old| old.triangle).collect();
+        if bad.is_empty() { crossing_pairs(&self.mesh, &touched).into_flattened() } else { bad }
     }
 
     fn is_sound_still(&self, old: &Old) -> bool {
@@ -393,8 +397,9 @@ impl Cloth<'_> {
 
 /// A vertex on its way.
 struct Move {
+    /// One that starts at the vertex, before anything is flipped.
+    half_edge: u32,
     vertex: u32,
-    from: Vec3,
     to: Vec3,
 }
 
