@@ -64,8 +64,9 @@ pub enum Guarantee {
     #[default]
     Proven,
     /// Distances at seven points of every triangle, and where the surface brings bounds of second derivatives at so many more
-    /// that what lies between them is below a twentieth of the tolerance (up to 88 points, and where mending helps). Fewer
-    /// triangles where a surface is unevenly parametrised, such as around a pole, since sliding along the surface is no error.
+    /// that what lies between them is below a twentieth of the tolerance (up to 88 points). Where more triangles do not help
+    /// at those, as along the crease of a fold, the distance that is told is above the tolerance. Fewer triangles where a
+    /// surface is unevenly parametrised, such as around a pole, since sliding along the surface is no error.
     Measured,
 }
 

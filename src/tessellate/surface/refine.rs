@@ -109,8 +109,10 @@ impl<'a> Refinement<'a> {
             seen.copy_from_slice(&self.triangles);
             failing.iter().for_each(|&(t, ratio)| self.ratios[t as usize] = ratio);
             // No flips: they compare what is found at the usual places, and could undo each other where more is known.
-            if self.mend(failing.into_iter().map(|(t, _)| t).collect(), false, care, room).is_err() {
+            if self.mend(failing.iter().map(|&(t, _)| t).collect(), false, care, room).is_err() {
                 *self = before;
+                // What was found is part of the distance that is told.
+                failing.iter().for_each(|&(t, ratio)| self.ratios[t as usize] = ratio);
                 return;
             }
         }
