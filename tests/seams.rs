@@ -174,3 +174,13 @@ fn surfaces_that_only_touch_are_left() {
         assert!(solid.volume() > 2.0 * 4.0 / 3.0 * PI * 0.97, "{gap}");
     }
 }
+
+#[test]
+fn what_has_no_seams_keeps_what_is_known_of_it() {
+    // Mirrored without rounding.
+    let text = "module ball() { implicit(function(p) norm(p - [3, 0, 0]) - 1, [[1.5, -2, -2], [4.5, 2, 2]], \
+                tolerance = 0.05); } union() { ball(); mirror([1, 0, 0]) ball(); }";
+    let (solid, Built { report, .. }) = built(text);
+    assert_eq!(report.seams, Seams::default());
+    assert!(solid.is_embedded());
+}

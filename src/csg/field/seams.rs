@@ -36,7 +36,8 @@ pub(in crate::csg) struct Sewn {
     pub(in crate::csg) seams: Seams,
 }
 
-/// Moves seams onto their surfaces; `None` where there is nothing to move.
+/// Moves seams onto their surfaces; `None` where there are none. Where nothing could be moved the solid is as it was, with
+/// all that is known of it.
 pub(in crate::csg) fn sew(solid: &Solid, faces: &Faces) -> Option<Sewn> {
     let first = faces.of_triangle.first()?;
     if faces.of_triangle.iter().all(|face| face == first) {
@@ -44,6 +45,9 @@ pub(in crate::csg) fn sew(solid: &Solid, faces: &Faces) -> Option<Sewn> {
     }
     let mut cloth = Cloth::new(solid, faces);
     let mut new = cloth.seam_vertices();
+    if new.is_empty() {
+        return None;
+    }
     let mut seams = Seams::default();
     for _ in 0..ROUNDS {
         let targets: Vec<(u32, Option<Vec3>)> = new.iter().map(|&h| (h, cloth.target(h))).collect();
@@ -56,6 +60,10 @@ pub(in crate::csg) fn sew(solid: &Solid, faces: &Faces) -> Option<Sewn> {
         if new.is_empty() {
             break;
         }
+    }
+    if seams.moved == 0 {
+        let parents = (0..solid.triangles().len() as u32).collect();
+        return Some(Sewn { solid: solid.clone(), parents, seams });
     }
     let Cloth { mesh, parents, .. } = cloth;
     Some(Sewn { solid: Solid::assume(mesh, false), parents, seams })
