@@ -39,7 +39,7 @@
 //! |---|---|
 //! | ground | [`math`], [`par`], [`numeric`] |
 //! | nouns | [`spatial`], [`curve`], [`polygon`], [`mesh`], [`sdf`], [`surface`] |
-//! | verbs | [`tessellate`], [`isosurface`], [`boolean`], [`hull`] |
+//! | verbs | [`tessellate`], [`isosurface`], [`boolean`], [`hull`], [`simplify`] |
 //! | worlds | [`csg`] recipe to solid, [`io`] values and bytes, [`plot`] curves and data to figures, [`render`] solids to pictures, [`script`] text to recipe |
 //! | shell | `cli`, `main.rs`: paths, clock, environment, terminal; only in the program |
 
@@ -60,6 +60,7 @@ pub mod surface;
 pub mod boolean;
 pub mod hull;
 pub mod isosurface;
+pub mod simplify;
 pub mod tessellate;
 
 // worlds

@@ -50,7 +50,7 @@ impl FormulaArgs {
             terminal.stage(clock.start(stage));
         });
         times.append(&clock.into_times());
-        let Meshed { mesh, report } = meshed.map_err(|error| explain(source, &error))?;
+        let Meshed { mesh, report, .. } = meshed.map_err(|error| explain(source, &error))?;
         meshing::warn(source, "the formula", &report, mesh.is_empty(), terminal);
         meshing::row(&report, summary);
         Ok(mesh)

@@ -195,7 +195,7 @@ impl Solver<'_, '_> {
             self.show(Stage::Fields(stage));
         });
         self.show(Stage::Solids);
-        let Meshed { mesh, report } = meshed?;
+        let Meshed { mesh, report, .. } = meshed?;
         let triangles = mesh.triangles().len();
         self.check_limit(triangles as u64)?;
         let error = (tolerance + before) * self.stretch_of(node);

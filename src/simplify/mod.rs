@@ -1,0 +1,121 @@
+//! Fewer triangles for the same surface.
+//!
+//! [`to_field`] collapses edges of the mesh of an implicit surface as long as mesh and surface are proven to stay within
+//! the tolerance of each other, both ways, measured to the field and not to the mesh at hand.
+//!
+//! # The proof
+//!
+//! Each vertex has a post: two points at the tolerance from it, along the field's gradient and against it. The triangles
+//! between the outer ends make a surface M+, those between the inner ends M-; the space between corresponding
+//! triangles is the shell of the mesh, and all of it is within the tolerance of the mesh.
+//!
+//! From the mesh to the surface: the field is positive on the outer side of each triangle and negative on the inner
+//! one, so that it has a zero between them over each point of the mesh.
+//!
+//! From the surface to the mesh: M+ winds around a zero once more than M- does, and a point for which they differ
+//! lies in the shell. Where that holds for the mesh at hand is found first (see `anchor`). It stays so when the star of a
+//! vertex is replaced by other triangles with the same border, if the field grows along some direction all over a
+//! convex cell around both and has the right signs on both sides of both stars: from a zero go against that direction, until
+//! the cell is left; on the way the field is negative, so neither the old nor the new part of M+ is met, which differ
+//! by a closed surface that therefore does not wind around the zero. The same goes for M-. So no error adds up, and nothing
+//! needs to be known of the mesh in between.
+
+mod anchor;
+mod collapse;
+mod fields;
+mod shell;
+
+use crate::math::Aabb;
+use crate::mesh::{Mesh, Solid, crossing_pairs};
+use crate::par;
+use crate::sdf::Field;
+use anchor::Shelled;
+use collapse::Collapse;
+use fields::Fields;
+use shell::Post;
+
+/// A solid with edges collapsed.
+#[derive(Clone, Debug)]
+pub struct Simplified {
+    /// Closed, two-manifold, of the same topology, free of self-crossings when the given one is.
+    pub mesh: Solid,
+    /// Number of vertices that are gone.
+    pub collapsed: usize,
+}
+
+/// The mesh of a field's surface with fewer triangles, still within the tolerance of it, both ways.
+///
+/// `proven` says for each triangle whether all of the surface in its part of space is known to be within `tolerance` of the
+/// mesh, see [`Meshed::proven`](crate::isosurface::Meshed::proven); others stay, and so does what is near creases,
+/// places without a value and other sheets. The tolerance is in model units.
+///
+/// Vertices stay where they are or go. Triangles keep facing the way of the field's gradient, none becomes a needle that was
+/// not one, topology does not change, and crossings are excluded by exact signs. The same input gives the same bits.
+/// A field without ranges proves nothing, so that the solid is handed back as it is.
+///
+/// ```
+/// use ogee::isosurface::{self, Options};
+/// use ogee::sdf::{Implicit, Primitive};
+/// use ogee::simplify;
+///
+/// let ring = Implicit::primitive(Primitive::Torus { major: 0.8, minor: 0.25 })?.tape();
+/// let meshed = isosurface::mesh(&ring, &Options::new(0.005))?;
+/// let fewer = simplify::to_field(&ring, &meshed.mesh, &meshed.proven, 0.005).mesh;
+/// assert!(2 * fewer.triangles().len() < meshed.mesh.triangles().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Panics
+/// When `proven` has another length than the triangles.
+pub fn to_field(field: &dyn Field, solid: &Solid, proven: &[bool], tolerance: f64) -> Simplified {
+    let mesh = solid.mesh();
+    assert!(proven.len() == mesh.triangles.len(), "{} flags", proven.len());
+    let bounds = mesh.bounds();
+    if !proven.contains(&true) || field.slopes(bounds).is_none() {
+        return Simplified { mesh: solid.clone(), collapsed: 0 };
+    }
+    let around = triangles_around(mesh);
+    let boxes: Vec<Aabb> = around.iter().map(|star| Shelled::room(mesh, star, tolerance)).collect();
+    let fields = Fields::over(field, &boxes);
+    let vertices: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+    let posts = par::map(&vertices, |&v| {
+        let cell = boxes[v as usize];
+        Post::at(mesh.positions[v as usize], fields.within(v, cell), tolerance)
+    });
+    let shelled = Shelled { mesh, around: &around, posts: &posts, fields: &fields, tolerance };
+    let mut free = shelled.anchored(proven);
+    let mut reach = 0.0;
+    while free.contains(&true) {
+        let mut collapse = Collapse::new(mesh, around.clone(), &posts, &fields, tolerance, &free);
+        collapse.run();
+        let collapsed = collapse.collapsed;
+        let (fewer, changed) = collapse.finish(&mesh.triangles);
+        let crossings = crossing_pairs(&fewer, &changed);
+        if crossings.is_empty() {
+            let Ok(found) = Solid::new(fewer) else { break };
+            return Simplified { mesh: Solid::assume(found.into_mesh(), solid.is_embedded()), collapsed };
+        }
+        lock(mesh, &mut free, &fewer, &crossings, reach);
+        // In the end this reaches everywhere.
+        reach = 2.0 * reach + tolerance;
+    }
+    Simplified { mesh: solid.clone(), collapsed: 0 }
+}
+
+/// The triangles at each vertex.
+fn triangles_around(mesh: &Mesh) -> Vec<Vec<u32>> {
+    let mut around = vec![Vec::new(); mesh.positions.len()];
+    for (index, triangle) in (0..).zip(&mesh.triangles) {
+        triangle.iter().for_each(|&id| around[id as usize].push(index));
+    }
+    around
+}
+
+/// Keeps all vertices that are, or were, near triangles that cross.
+fn lock(mesh: &Mesh, free: &mut [bool], fewer: &Mesh, crossings: &[[u32; 2]], reach: f64) {
+    for &t in crossings.as_flattened() {
+        let near = anchor::grown(Aabb::around(fewer.corners(t as usize)), reach);
+        let is_near = |p: &crate::math::Vec3| near.touches(Aabb { min: *p, max: *p });
+        free.iter_mut().zip(&mesh.positions).filter(|(_, p)| is_near(p)).for_each(|(free, _)| *free = false);
+    }
+}
