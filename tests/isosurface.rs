@@ -112,7 +112,7 @@ fn check(model: &Model) {
     let Model { name, shape, tolerance, slope, .. } = model;
     let tape = shape.tape();
     let options = Options { certify: model.certify, ..Options::new(*tolerance) };
-    let Meshed { mesh, report, .. } = meshed(&tape, &options, name);
+    let Meshed { mesh, report } = meshed(&tape, &options, name);
     assert_eq!(report.certified, model.certify.then_some(*tolerance), "{name}");
     // Without a proof, what may have a second sheet is listed too.
     assert!(report.unproven.is_empty() || !model.certify, "{name}: {report:?}");
@@ -183,7 +183,7 @@ fn creased_models() {
     check(&Model { tolerance: 0.002, ..usual("plate", cuboid(0.8, 0.8, 0.005), 1.6 * 1.6 * 0.01, 0) });
     check(&usual("cone", cone, PI / 3.0 * 0.512, 0));
     let tape = part.tape();
-    let Meshed { mesh, report, .. } = meshed(&tape, &Options { certify: false, ..Options::new(0.03) }, "part");
+    let Meshed { mesh, report } = meshed(&tape, &Options { certify: false, ..Options::new(0.03) }, "part");
     assert_eq!(report.capped, 0, "part: {report:?}");
     near(&tape, &mesh, 0.03, 1.0, "part");
     assert_eq!(mesh.measures().genus, Some(5));
@@ -228,7 +228,7 @@ fn many_parts_and_tunnels() {
     let gyroid = primitive(Primitive::Periodic { kind: Periodic::Gyroid, period: 1.0 });
     let tape = gyroid.intersection(&sphere(0.8)).tape();
     let options = Options { certify: false, ..Options::new(0.02) };
-    let Meshed { mesh, report, .. } = meshed(&tape, &options, "gyroid");
+    let Meshed { mesh, report } = meshed(&tape, &options, "gyroid");
     assert_eq!(report.certified, None);
     assert!(mesh.measures().genus.is_some_and(|genus| genus > 3), "{:?}", mesh.measures());
 }
@@ -294,7 +294,7 @@ fn fields_without_an_inside() {
         ("square", formula(|x, y, z| ball(x, y, z).square())),
     ];
     for (name, tape) in nothing {
-        let Meshed { mesh, report, .. } = meshed(&tape, &in_block(0.05), name);
+        let Meshed { mesh, report } = meshed(&tape, &in_block(0.05), name);
         assert!(mesh.is_empty(), "{name}");
         assert!(!report.unsigned.is_empty(), "{name}: {report:?}");
     }
@@ -305,7 +305,7 @@ fn fields_without_an_inside() {
 #[test]
 fn places_without_a_value() {
     let tape = formula(|x, y, z| x.sqrt() + y.square() + z.square() - 0.5);
-    let Meshed { mesh, report, .. } = meshed(&tape, &in_block(0.05), "root");
+    let Meshed { mesh, report } = meshed(&tape, &in_block(0.05), "root");
     assert!(!mesh.is_empty() && !report.undefined.is_empty(), "{report:?}");
 }
 
@@ -327,7 +327,7 @@ fn singular_places_are_listed() {
     let cone = formula(|x, y, z| x.square() + y.square() - z.square());
     let umbrella = formula(|x, y, z| x.square() - y.square() * z);
     for (name, tape) in [("double cone", cone), ("umbrella", umbrella)] {
-        let Meshed { mesh, report, .. } = meshed(&tape, &in_block(0.1), name);
+        let Meshed { mesh, report } = meshed(&tape, &in_block(0.1), name);
         assert!(!mesh.is_empty() && report.capped > 0, "{name}");
         assert!(!report.unproven.is_empty(), "{name}: {report:?}");
     }
@@ -347,7 +347,7 @@ fn touching_and_coincident_parts() {
     ];
     for (name, shape) in cases {
         let tape = shape.tape();
-        let Meshed { mesh, report, .. } =
+        let Meshed { mesh, report } =
             meshed(&tape, &Options { search: Some(0.2), ..Options::new(0.1) }, name);
         if name == "cubes at a face" {
             // The field is zero on their common face, which is no surface.
@@ -362,7 +362,7 @@ fn touching_and_coincident_parts() {
 #[test]
 fn small_shapes_are_found() {
     let pair = moved(&sphere(0.01), -0.9, 0.1, 0.2).union(&moved(&sphere(0.4), 0.5, 0.0, 0.0));
-    let Meshed { mesh, report, .. } = meshed(&pair.tape(), &in_block(0.008), "small");
+    let Meshed { mesh, report } = meshed(&pair.tape(), &in_block(0.008), "small");
     assert_eq!((mesh.measures().components, report.unproven.count), (2, 0));
     // Thinner than any cell that the tolerance alone would ask for.
     let wall = formula(|x, y, z| ball(x, y, z).abs() - 0.03);
@@ -374,7 +374,7 @@ fn small_shapes_are_found() {
 #[test]
 fn shapes_that_leave_the_box() {
     let bounds = Aabb { min: Vec3::new(-0.5, -1.0, -1.0), max: Vec3::new(0.4, 0.3, 1.0) };
-    let Meshed { mesh, report, .. } =
+    let Meshed { mesh, report } =
         meshed(&formula(ball), &Options { bounds: Some(bounds), ..Options::new(0.02) }, "cut");
     assert!(report.capped > 0);
     let found = mesh.mesh().bounds();
@@ -401,7 +401,7 @@ fn fields_without_ranges_are_measured() {
         isosurface::mesh(&Own, &Options::new(0.05)).unwrap_err(),
         IsoError::Unbounded { searched: 0.0 }
     );
-    let Meshed { mesh, report, .. } = meshed(&Own, &in_block(0.05), "own");
+    let Meshed { mesh, report } = meshed(&Own, &in_block(0.05), "own");
     assert_eq!(report.certified, None);
     assert!(report.measured > 0.0 && report.measured <= 0.05, "{report:?}");
     near(&Own, &mesh, 0.05, 1.0, "own");

@@ -155,7 +155,14 @@ fn build_formula(
     mut summary: Summary,
     terminal: &Terminal,
 ) -> Result<(), Stop> {
-    let solid = args.formula.build(&job.source, args.tolerance, &mut times, &mut summary, terminal)?;
+    let solid = args.formula.build(
+        &job.source,
+        args.tolerance,
+        args.script.build_options().coarsen,
+        &mut times,
+        &mut summary,
+        terminal,
+    )?;
     write_solid(job, &solid, &mut times, &mut summary, terminal)?;
     summary.row("seconds", times.rows());
     job.summary.map_or(Ok(()), |form| print(&summary.print(form)))

@@ -10,6 +10,7 @@ use crate::io::vm;
 use crate::isosurface::{self, IsoError, Meshed, Options};
 use crate::math::{Aabb, Vec3};
 use crate::mesh::Solid;
+use crate::simplify;
 
 /// What formulas are meshed by.
 #[derive(clap::Args)]
@@ -31,6 +32,7 @@ impl FormulaArgs {
         &self,
         source: &Source,
         tolerance: Option<f64>,
+        coarsen: bool,
         times: &mut Times,
         summary: &mut Summary,
         terminal: &Terminal,
@@ -46,13 +48,21 @@ impl FormulaArgs {
         })?;
         let options = Options { bounds: self.bounds, ..Options::new(tolerance) };
         let mut clock = Clock::default();
-        let meshed = isosurface::mesh_with_progress(&formula.compile(), &options, &mut |stage| {
+        let field = formula.compile();
+        let meshed = isosurface::mesh_with_progress(&field, &options, &mut |stage| {
             terminal.stage(clock.start(stage));
         });
+        let Meshed { mut mesh, mut report } = meshed.map_err(|error| explain(source, &error))?;
+        let triangles_before = mesh.triangles().len();
+        if coarsen {
+            terminal.stage(clock.start_coarsening());
+            let fewer = simplify::to_field(&field, &mesh, tolerance);
+            mesh = fewer.mesh;
+            report.measured = report.measured.max(fewer.measured);
+        }
         times.append(&clock.into_times());
-        let Meshed { mesh, report, .. } = meshed.map_err(|error| explain(source, &error))?;
         meshing::warn(source, "the formula", &report, mesh.is_empty(), terminal);
-        meshing::row(&report, summary);
+        meshing::row(&report, triangles_before, summary);
         Ok(mesh)
     }
 }

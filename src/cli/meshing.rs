@@ -19,15 +19,25 @@ pub(super) struct Clock {
 impl Clock {
     /// Starts a stage and hands back what to show.
     pub(super) fn start(&mut self, stage: Stage) -> &'static str {
-        self.stop();
         let (name, doing) = match stage {
             Stage::Bounds => ("bounds", "looking for the box"),
             Stage::Refine => ("refine", "refining"),
             Stage::Extract => ("extract", "making triangles"),
             Stage::Certify => ("certify", "proving the tolerance"),
         };
-        self.running = Some((name, Instant::now()));
+        self.run(name);
         doing
+    }
+
+    /// Starts to leave out triangles and hands back what to show.
+    pub(super) fn start_coarsening(&mut self) -> &'static str {
+        self.run("coarsen");
+        "coarsening"
+    }
+
+    fn run(&mut self, name: &'static str) {
+        self.stop();
+        self.running = Some((name, Instant::now()));
     }
 
     /// Ends the stage that runs.
@@ -68,10 +78,11 @@ pub(super) fn warn(source: impl Display, what: &str, report: &Report, is_empty: 
 }
 
 /// The row of a formula.
-pub(super) fn row(report: &Report, summary: &mut Summary) {
+pub(super) fn row(report: &Report, triangles_before: usize, summary: &mut Summary) {
     summary.row(
         "surface",
         json!({
+            "triangles before coarsening": triangles_before,
             "certified": report.certified,
             "measured": report.measured,
             "capped": report.capped,
@@ -94,6 +105,7 @@ pub(super) fn rows(meshings: &[Meshing], summary: &mut Summary) {
         json!({
             "meshed": meshings.len(),
             "triangles": meshings.iter().map(|m| m.triangles).sum::<usize>(),
+            "triangles before coarsening": meshings.iter().map(|m| m.triangles_before).sum::<usize>(),
             "error bound": largest(|m| m.error),
             "measured": largest(|m| m.report.measured),
             "uncertified": meshings.iter().filter(|m| m.report.certified.is_none()).count(),

@@ -120,6 +120,7 @@ pub(super) fn build_recipe(
     let mut show = |Progress { done, total, stage }: Progress| {
         let doing = match stage {
             Stage::Fields(stage) => clock.start(stage),
+            Stage::Coarsen => clock.start_coarsening(),
             Stage::Solids => {
                 clock.stop();
                 "building"

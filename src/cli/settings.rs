@@ -67,6 +67,9 @@ pub(super) struct ScriptArgs {
     /// Take coordinates for equal that differ by less than this part of the model's size; 0 keeps all bits
     #[arg(long, value_name = "R", default_value = "1e-12", value_parser = resolution)]
     resolution: f64,
+    /// Keep all triangles of meshed fields and formulas, also those that the tolerance does not need
+    #[arg(long)]
+    no_coarsen: bool,
     #[command(flatten, next_help_heading = "Limits")]
     limits: Limits,
 }
@@ -114,7 +117,11 @@ impl ScriptArgs {
 
     /// The builder's options.
     pub(super) fn build_options(&self) -> csg::BuildOptions {
-        csg::BuildOptions { max_triangles: self.limits.limit_triangles, resolution: self.resolution }
+        csg::BuildOptions {
+            max_triangles: self.limits.limit_triangles,
+            resolution: self.resolution,
+            coarsen: !self.no_coarsen,
+        }
     }
 
     /// The files that the script `main` may read.

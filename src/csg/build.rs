@@ -27,12 +27,14 @@ pub struct BuildOptions {
     /// parts which were meant to be flush, and miss each other by rounding errors (0.1 + 0.2 is not 0.3), leave no film
     /// and no gap. 0 keeps all bits.
     pub resolution: f64,
+    /// Whether meshes of fields lose the triangles that their tolerance does not need.
+    pub coarsen: bool,
 }
 
 impl Default for BuildOptions {
-    /// Fifty million triangles; a resolution of 1e-12.
+    /// Fifty million triangles; a resolution of 1e-12; no more triangles than needed.
     fn default() -> BuildOptions {
-        BuildOptions { max_triangles: 50_000_000, resolution: 1e-12 }
+        BuildOptions { max_triangles: 50_000_000, resolution: 1e-12, coarsen: true }
     }
 }
 
@@ -258,6 +260,8 @@ pub enum Stage {
     Solids,
     /// Meshing a field.
     Fields(isosurface::Stage),
+    /// Leaving out triangles of a field's mesh.
+    Coarsen,
 }
 
 /// Cooks a recipe.

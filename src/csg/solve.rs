@@ -127,6 +127,11 @@ impl<'a, 'b> Solver<'a, 'b> {
         self.options.max_triangles
     }
 
+    /// Whether meshes of fields lose the triangles that their tolerance does not need.
+    pub(super) fn coarsens(&self) -> bool {
+        self.options.coarsen
+    }
+
     pub(super) fn step(&mut self) {
         let done = self.steps.done + 1;
         self.steps = Progress { done, total: self.steps.total.max(done), ..self.steps };

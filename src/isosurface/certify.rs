@@ -80,8 +80,8 @@ impl<'m> Pieces<'m> {
             of_leaf: Map::default(),
             at_node: vec![Vec::new(); refinement.nodes.places.len()],
         };
-        for ([generation, index, first], range) in extracted.of_leaves() {
-            let end = range.end as u32;
+        let ends = extracted.origins.iter().skip(1).map(|o| o[2]).chain([extracted.caps_from as u32]);
+        for (&[generation, index, first], end) in extracted.origins.iter().zip(ends) {
             pieces.of_leaf.insert(name_key(generation, index), [first, end]);
             let leaf = &refinement.leaves[generation as usize][index as usize];
             for id in leaf.tetrahedron.nodes {

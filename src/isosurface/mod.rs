@@ -56,9 +56,6 @@ impl Options {
 pub struct Meshed {
     /// The solid: closed, two-manifold, free of self-crossings.
     pub mesh: Solid,
-    /// For each triangle whether it is proven in its cell that mesh and surface are within the tolerance of each other;
-    /// caps never are.
-    pub proven: Vec<bool>,
     /// How it went.
     pub report: Report,
 }
@@ -251,7 +248,7 @@ pub fn mesh_with_progress(
     };
     if found.bounds.is_empty() {
         report.certified = Some(options.tolerance);
-        return Ok(Meshed { mesh: Solid::default(), proven: Vec::new(), report });
+        return Ok(Meshed { mesh: Solid::default(), report });
     }
     let sizes = sizes(found.bounds, field.range(found.bounds).is_some(), options)?;
     let mut refinement = Refinement::new(field, found.bounds, sizes);
@@ -280,8 +277,7 @@ pub fn mesh_with_progress(
         report.unproven = refinement.given_up();
     }
     report.complete(&refinement, &extracted);
-    let proven = proven(&refinement, &extracted);
-    Ok(Meshed { mesh: closed(extracted)?, proven, report })
+    Ok(Meshed { mesh: closed(extracted)?, report })
 }
 
 impl Report {
@@ -304,15 +300,6 @@ impl Report {
 /// What is refined for the proof alone may multiply the cells by no more than this: ranges of some formulas (the cube of
 /// a distance) prove nothing before cells are as small as the tolerance, though the mesh has long been good enough.
 const PROOF_GROWTH: usize = 8;
-
-/// The triangles of leaves that have been proven.
-fn proven(refinement: &Refinement<'_>, extracted: &Extracted) -> Vec<bool> {
-    let mut proven = vec![false; extracted.mesh.triangles.len()];
-    for ([generation, index, _], range) in extracted.of_leaves() {
-        proven[range].fill(refinement.leaves[generation as usize][index as usize].proven);
-    }
-    proven
-}
 
 /// The solid. That it does not cross itself follows from where its vertices are.
 fn closed(extracted: Extracted) -> Result<Solid, IsoError> {

@@ -55,11 +55,10 @@ impl Shelled<'_> {
         grown(Aabb::of(corners), KNOWN * tolerance)
     }
 
-    /// For each vertex whether the shell holds all of the surface that is within the tolerance of its star. Triangles that
-    /// are not `proven` are taken for unknown.
-    pub(super) fn anchored(&self, proven: &[bool]) -> Vec<bool> {
+    /// For each vertex whether the shell holds all of the surface that is within the tolerance of its star.
+    pub(super) fn anchored(&self) -> Vec<bool> {
         let vertices: Vec<u32> = (0..self.mesh.positions.len() as u32).collect();
-        let stars = par::map_above(FEW, &vertices, |&v| self.star(v, proven));
+        let stars = par::map_above(FEW, &vertices, |&v| self.star(v));
         let mut signed = vec![false; self.mesh.triangles.len()];
         for &t in stars.iter().flatten().flat_map(|star| &star.signed) {
             signed[t as usize] = true;
@@ -76,11 +75,8 @@ impl Shelled<'_> {
         })
     }
 
-    fn star(&self, vertex: u32, proven: &[bool]) -> Option<Star> {
+    fn star(&self, vertex: u32) -> Option<Star> {
         let triangles = &self.around[vertex as usize];
-        if !triangles.iter().all(|&t| proven[t as usize]) {
-            return None;
-        }
         let cell = Self::room(self.mesh, triangles, self.tolerance);
         let local = Local::of(self.fields.within(vertex, cell), cell)?;
         let own = triangles.iter().copied().filter(|&t| self.mesh.triangles[t as usize][0] == vertex);

@@ -111,7 +111,7 @@ impl<'a> Collapse<'a> {
         }
     }
 
-    /// The mesh, the former number of each vertex, and the former one of each triangle that is not what it was.
+    /// The mesh, and which of its triangles are new.
     pub(super) fn finish(self, before: &[[u32; 3]]) -> (Mesh, Vec<u32>) {
         let mut names = vec![u32::MAX; self.positions.len()];
         let (mut mesh, mut changed) = (Mesh::default(), Vec::new());

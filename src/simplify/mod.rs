@@ -41,13 +41,15 @@ pub struct Simplified {
     pub mesh: Solid,
     /// Number of vertices that are gone.
     pub collapsed: usize,
+    /// The greatest distance from the surface measured at the middles of new triangles; no bound.
+    pub measured: f64,
 }
 
 /// The mesh of a field's surface with fewer triangles, still within the tolerance of it, both ways.
 ///
-/// `proven` says for each triangle whether all of the surface in its part of space is known to be within `tolerance` of the
-/// mesh, see [`Meshed::proven`](crate::isosurface::Meshed::proven); others stay, and so does what is near creases,
-/// places without a value and other sheets. The tolerance is in model units.
+/// All of the surface that is within `tolerance` (in model units) of the given mesh is so of the new one, and the
+/// other way round. What is near creases, places without a value, other sheets or the border of a box that cuts the shape
+/// off stays as it is.
 ///
 /// Vertices stay where they are or go. Triangles keep facing the way of the field's gradient, none becomes a needle that was
 /// not one, topology does not change, and crossings are excluded by exact signs. The same input gives the same bits.
@@ -60,19 +62,15 @@ pub struct Simplified {
 ///
 /// let ring = Implicit::primitive(Primitive::Torus { major: 0.8, minor: 0.25 })?.tape();
 /// let meshed = isosurface::mesh(&ring, &Options::new(0.005))?;
-/// let fewer = simplify::to_field(&ring, &meshed.mesh, &meshed.proven, 0.005).mesh;
+/// let fewer = simplify::to_field(&ring, &meshed.mesh, 0.005).mesh;
 /// assert!(2 * fewer.triangles().len() < meshed.mesh.triangles().len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-///
-/// # Panics
-/// When `proven` has another length than the triangles.
-pub fn to_field(field: &dyn Field, solid: &Solid, proven: &[bool], tolerance: f64) -> Simplified {
+pub fn to_field(field: &dyn Field, solid: &Solid, tolerance: f64) -> Simplified {
     let mesh = solid.mesh();
-    assert!(proven.len() == mesh.triangles.len(), "{} flags", proven.len());
-    let bounds = mesh.bounds();
-    if !proven.contains(&true) || field.slopes(bounds).is_none() {
-        return Simplified { mesh: solid.clone(), collapsed: 0 };
+    let as_it_is = || Simplified { mesh: solid.clone(), collapsed: 0, measured: 0.0 };
+    if solid.is_empty() || field.slopes(mesh.bounds()).is_none() {
+        return as_it_is();
     }
     let around = triangles_around(mesh);
     let boxes: Vec<Aabb> = around.iter().map(|star| Shelled::room(mesh, star, tolerance)).collect();
@@ -83,7 +81,7 @@ pub fn to_field(field: &dyn Field, solid: &Solid, proven: &[bool], tolerance: f6
         Post::at(mesh.positions[v as usize], fields.within(v, cell), tolerance)
     });
     let shelled = Shelled { mesh, around: &around, posts: &posts, fields: &fields, tolerance };
-    let mut free = shelled.anchored(proven);
+    let mut free = shelled.anchored();
     let mut reach = 0.0;
     while free.contains(&true) {
         let mut collapse = Collapse::new(mesh, around.clone(), &posts, &fields, tolerance, &free);
@@ -92,14 +90,26 @@ pub fn to_field(field: &dyn Field, solid: &Solid, proven: &[bool], tolerance: f6
         let (fewer, changed) = collapse.finish(&mesh.triangles);
         let crossings = crossing_pairs(&fewer, &changed);
         if crossings.is_empty() {
+            let measured = measured(field, &fewer, &changed);
             let Ok(found) = Solid::new(fewer) else { break };
-            return Simplified { mesh: Solid::assume(found.into_mesh(), solid.is_embedded()), collapsed };
+            let mesh = Solid::assume(found.into_mesh(), solid.is_embedded());
+            return Simplified { mesh, collapsed, measured };
         }
         lock(mesh, &mut free, &fewer, &crossings, reach);
         // In the end this reaches everywhere.
         reach = 2.0 * reach + tolerance;
     }
-    Simplified { mesh: solid.clone(), collapsed: 0 }
+    as_it_is()
+}
+
+/// The greatest distance from the surface, by value over slope, at the middles of some triangles.
+fn measured(field: &dyn Field, mesh: &Mesh, triangles: &[u32]) -> f64 {
+    let distances = par::map(triangles, |&t| {
+        let [a, b, c] = mesh.corners(t as usize);
+        let (value, gradient) = field.gradient((a + b + c) / 3.0);
+        value.abs() / gradient.length()
+    });
+    distances.into_iter().filter(|distance| distance.is_finite()).fold(0.0, f64::max)
 }
 
 /// The triangles at each vertex.

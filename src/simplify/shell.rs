@@ -92,8 +92,7 @@ impl Bend {
             return None;
         }
         let [xx, yy, zz, yz, zx, xy] = hessian.map(Interval::middle);
-        let middle =
-            Mat3::from_cols(Vec3::new(xx, xy, zx), Vec3::new(xy, yy, yz), Vec3::new(zx, yz, zz));
+        let middle = Mat3::from_cols(Vec3::new(xx, xy, zx), Vec3::new(xy, yy, yz), Vec3::new(zx, yz, zz));
         let [xx, yy, zz, yz, zx, xy] = hessian.map(|h| 0.5 * h.width() * (1.0 + 1e-9));
         // No eigenvalue exceeds the greatest sum of magnitudes in a row (Gershgorin 1931).
         let spread = (xx + xy + zx).max(xy + yy + yz).max(zx + yz + zz);

@@ -11,6 +11,7 @@ use crate::isosurface::{self, Meshed, Options, Places};
 use crate::math::{Aabb, Affine3, Vec3};
 use crate::mesh::Solid;
 use crate::sdf::{Implicit, greatest_stretch};
+use crate::simplify;
 
 /// A mesh that was made of a field.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Meshing {
     pub error: f64,
     /// Number of triangles.
     pub triangles: usize,
+    /// Number of triangles before those were left out that the tolerance does not need.
+    pub triangles_before: usize,
     /// How it went, and what could not be proven.
     pub report: isosurface::Report,
 }
@@ -81,7 +84,8 @@ impl Solver<'_, '_> {
             unsigned: Places::default(),
         };
         let error = body.tolerance * self.stretch_of(node);
-        self.report.meshings.push(Meshing { error, triangles: solid.triangles().len(), report });
+        let triangles = solid.triangles().len();
+        self.report.meshings.push(Meshing { error, triangles, triangles_before: triangles, report });
     }
 
     /// The mesh of a smooth boolean or an offset.
@@ -191,15 +195,23 @@ impl Solver<'_, '_> {
         let known = Implicit::formula(field.expr().clone(), field.lipschitz(), margined(room));
         let most_cells = MOST_CELLS.min(self.max_triangles().saturating_mul(CELLS_A_TRIANGLE)) as usize;
         let options = Options { bounds: cut.then_some(bounds), most_cells, ..Options::new(tolerance) };
-        let meshed = isosurface::mesh_with_progress(&known.tape(), &options, &mut |stage| {
+        let tape = known.tape();
+        let meshed = isosurface::mesh_with_progress(&tape, &options, &mut |stage| {
             self.show(Stage::Fields(stage));
         });
+        let Meshed { mut mesh, mut report } = meshed?;
+        let triangles_before = mesh.triangles().len();
+        if self.coarsens() {
+            self.show(Stage::Coarsen);
+            let fewer = simplify::to_field(&tape, &mesh, tolerance);
+            mesh = fewer.mesh;
+            report.measured = report.measured.max(fewer.measured);
+        }
         self.show(Stage::Solids);
-        let Meshed { mesh, report, .. } = meshed?;
         let triangles = mesh.triangles().len();
         self.check_limit(triangles as u64)?;
         let error = (tolerance + before) * self.stretch_of(node);
-        self.report.meshings.push(Meshing { error, triangles, report });
+        self.report.meshings.push(Meshing { error, triangles, triangles_before, report });
         Ok(mesh)
     }
 }
