@@ -8,10 +8,10 @@ use super::extract::Extracted;
 use super::lattice::Map;
 use super::refine::{Leaf, Refinement};
 use super::tetrahedron::{EDGES, LAST_GENERATION};
-use super::{Places, near::distance_to_triangle};
+use super::{Places, near::distance_to_triangle, shells};
 use crate::math::{Aabb, Interval, Vec3};
 use crate::par;
-use crate::sdf::{Curvature, Field};
+use crate::sdf::{Curvature, Field, Shell};
 
 /// Leaves that must be halved, and those that cannot be.
 pub(super) struct Proof {
@@ -42,11 +42,12 @@ enum Outcome {
 /// Tries to prove every leaf that has not been proven before.
 pub(super) fn prove(refinement: &Refinement<'_>, extracted: &Extracted) -> Proof {
     let pieces = Pieces::of(refinement, extracted);
+    let shell = shells::shell(refinement, extracted);
     let mut names: Vec<[usize; 2]> = Vec::new();
     for (generation, leaves) in refinement.leaves.iter().enumerate() {
         names.extend((0..leaves.len()).filter(|&i| !leaves[i].proven).map(|i| [generation, i]));
     }
-    let outcome = |&name: &[usize; 2]| judge(name, refinement, &pieces);
+    let outcome = |&name: &[usize; 2]| judge(name, refinement, &pieces, &shell);
     let outcomes = par::map_above(64, &names, outcome);
     let mut proof = Proof { failed: Vec::new(), unproven: Places::default(), proven: Vec::new() };
     for (name, outcome) in names.into_iter().zip(outcomes) {
@@ -80,8 +81,8 @@ impl<'m> Pieces<'m> {
             of_leaf: Map::default(),
             at_node: vec![Vec::new(); refinement.nodes.places.len()],
         };
-        let ends = extracted.origins.iter().skip(1).map(|o| o[2]).chain([extracted.caps_from as u32]);
-        for (&[generation, index, first], end) in extracted.origins.iter().zip(ends) {
+        for ([generation, index, first], range) in extracted.of_leaves() {
+            let end = range.end as u32;
             pieces.of_leaf.insert(name_key(generation, index), [first, end]);
             let leaf = &refinement.leaves[generation as usize][index as usize];
             for id in leaf.tetrahedron.nodes {
@@ -91,25 +92,25 @@ impl<'m> Pieces<'m> {
         pieces
     }
 
-    fn own(&self, [generation, index]: [usize; 2]) -> Vec<[Vec3; 3]> {
+    fn own(&self, [generation, index]: [usize; 2]) -> Vec<u32> {
         let own = self.of_leaf.get(&name_key(generation as u32, index as u32));
-        own.map_or(Vec::new(), |&range| self.triangles(range))
+        own.map_or(Vec::new(), |&[first, end]| (first..end).collect())
     }
 
-    fn around(&self, leaf: &Leaf) -> Vec<[Vec3; 3]> {
+    fn around(&self, leaf: &Leaf) -> Vec<u32> {
         let mut ranges: Vec<[u32; 2]> =
             leaf.tetrahedron.nodes.iter().flat_map(|&id| self.at_node[id as usize].iter().copied()).collect();
         ranges.sort_unstable();
         ranges.dedup();
-        ranges.into_iter().flat_map(|range| self.triangles(range)).collect()
+        ranges.into_iter().flat_map(|[first, end]| first..end).collect()
     }
 
-    fn triangles(&self, [first, end]: [u32; 2]) -> Vec<[Vec3; 3]> {
-        (first..end).map(|i| self.extracted.mesh.corners(i as usize)).collect()
+    fn corners(&self, triangles: &[u32]) -> Vec<[Vec3; 3]> {
+        triangles.iter().map(|&i| self.extracted.mesh.corners(i as usize)).collect()
     }
 }
 
-fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>) -> Outcome {
+fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>, shell: &Shell<'_>) -> Outcome {
     let leaf = &refinement.leaves[name[0]][name[1]];
     let t = &leaf.tetrahedron;
     let corners = t.corners(&refinement.nodes);
@@ -118,11 +119,21 @@ fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>) -> 
     let cell = grown(Aabb::of(corners), sizes.tolerance);
     let pruned = whole.within(cell);
     let field = pruned.as_deref().unwrap_or(whole);
-    let prover =
-        Prover { field, tolerance: sizes.tolerance, own: pieces.own(name), around: pieces.around(leaf) };
+    let (own, around) = (pieces.own(name), pieces.around(leaf));
+    let prover = Prover {
+        field,
+        tolerance: sizes.tolerance,
+        own: pieces.corners(&own),
+        around: pieces.corners(&around),
+    };
     let bend = prover.bend(cell);
     let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
-    if prover.own.iter().all(near) && prover.zeros_are_near(corners, bend, &prover.around, 0) {
+    let signed = own.iter().all(|&t| shell.is_signed(t));
+    if (signed || prover.own.iter().all(near))
+        && (prover.has_no_zeros(corners, bend)
+            || shells::holds_zeros(shell, refinement, pieces.extracted, leaf, [&own, &around])
+            || prover.zeros_are_near(corners, bend, &prover.around, 0))
+    {
         return Outcome::Proven;
     }
     let size = t.size(&refinement.nodes);
@@ -206,6 +217,12 @@ impl Prover<'_> {
             let change =
                 (0..3).fold(Interval::ZERO, |sum, k| sum + slopes.gradient[k] * Interval::point(d[k]));
             change.magnitude() < value
+        })
+    }
+
+    fn has_no_zeros(&self, corners: [Vec3; 4], bend: Option<f64>) -> bool {
+        self.linear(corners, bend).is_some_and(|(linear, slack)| {
+            linear.iter().all(|&l| l > slack) || linear.iter().all(|&l| l < -slack)
         })
     }
 
@@ -293,6 +310,6 @@ fn longest_edge(corners: [Vec3; 4]) -> [usize; 2] {
     EDGES.into_iter().fold(EDGES[0], |best, edge| if length(edge) > length(best) { edge } else { best })
 }
 
-fn grown(cell: Aabb, distance: f64) -> Aabb {
+pub(super) fn grown(cell: Aabb, distance: f64) -> Aabb {
     Aabb { min: cell.min - distance, max: cell.max + distance }
 }

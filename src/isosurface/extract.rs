@@ -8,6 +8,7 @@ use super::refine::{Leaf, Refinement};
 use super::tetrahedron::FACES;
 use crate::math::Vec3;
 use crate::mesh::Mesh;
+use std::ops::Range;
 
 /// A closed mesh, and where its triangles come from.
 pub(super) struct Extracted {
@@ -16,6 +17,14 @@ pub(super) struct Extracted {
     pub(super) origins: Vec<[u32; 3]>,
     /// Triangles from this one on are caps.
     pub(super) caps_from: usize,
+}
+
+impl Extracted {
+    /// Each leaf with triangles and which those are.
+    pub(super) fn of_leaves(&self) -> impl Iterator<Item = ([u32; 3], Range<usize>)> + '_ {
+        let ends = self.origins.iter().skip(1).map(|origin| origin[2] as usize).chain([self.caps_from]);
+        self.origins.iter().zip(ends).map(|(&origin, end)| (origin, origin[2] as usize..end))
+    }
 }
 
 #[derive(Default)]

@@ -15,6 +15,7 @@ mod lattice;
 mod near;
 mod patch;
 mod refine;
+mod shells;
 mod tetrahedron;
 
 use crate::math::{Aabb, Vec3};

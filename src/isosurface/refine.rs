@@ -4,6 +4,7 @@ use super::crossing::{Cuts, Edge, Face, cut_edge, cut_face, lone};
 use super::extract::Extracted;
 use super::lattice::{Lattice, Nodes};
 use super::patch::{Patch, fitting, plainest};
+use super::shells::KNOWN;
 use super::tetrahedron::{EDGES, FACES, LAST_GENERATION, Tetrahedron};
 use super::{IsoError, Places};
 use crate::math::{Aabb, Interval, Vec3};
@@ -21,7 +22,7 @@ const CHEAP: usize = 16;
 const SAMPLED: f64 = 0.75;
 
 /// Proofs and samples look so many tolerances beyond a tetrahedron: what stands for the field in it must do so there.
-const AROUND: f64 = 1.001;
+pub(super) const AROUND: f64 = KNOWN + 0.001;
 
 /// Root cells along the longest side of the box.
 const ROOTS: usize = 6;
@@ -174,6 +175,11 @@ impl<'f> Refinement<'f> {
             }
             fresh = self.halve(&hanging);
         }
+    }
+
+    /// The whole field.
+    pub(super) fn root(&self) -> &dyn Field {
+        self.root
     }
 
     /// The field that stands for the whole one in a tetrahedron.

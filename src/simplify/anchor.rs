@@ -9,11 +9,10 @@
 //! change as the line is moved along the star, and where the line meets no triangle that faces down it is not zero.
 
 use super::fields::Fields;
-use super::shell::{Local, Post};
 use crate::math::{Aabb, Vec3};
 use crate::mesh::Mesh;
 use crate::par;
-use crate::spatial::Bvh;
+use crate::sdf::{Local, Shell};
 
 /// Depth of the points below and above, in tolerances.
 const DEEP: f64 = 3.5;
@@ -36,14 +35,15 @@ pub(super) struct Shelled<'a> {
     pub(super) mesh: &'a Mesh,
     /// The triangles at each vertex.
     pub(super) around: &'a [Vec<u32>],
-    pub(super) posts: &'a [Post],
+    pub(super) shell: Shell<'a>,
     pub(super) fields: &'a Fields<'a>,
     pub(super) tolerance: f64,
 }
 
 /// What is known around a star.
 struct Star {
-    direction: Vec3,
+    /// In which the field grows, steadily enough.
+    direction: Option<Vec3>,
     /// Those of its triangles whose first corner is the star's vertex, and for which the field's signs are proven.
     signed: Vec<u32>,
 }
@@ -56,21 +56,16 @@ impl Shelled<'_> {
     }
 
     /// For each vertex whether the shell holds all of the surface that is within the tolerance of its star.
-    pub(super) fn anchored(&self) -> Vec<bool> {
+    pub(super) fn anchored(&mut self) -> Vec<bool> {
         let vertices: Vec<u32> = (0..self.mesh.positions.len() as u32).collect();
         let stars = par::map_above(FEW, &vertices, |&v| self.star(v));
-        let mut signed = vec![false; self.mesh.triangles.len()];
-        for &t in stars.iter().flatten().flat_map(|star| &star.signed) {
-            signed[t as usize] = true;
-        }
-        let boxes: Vec<Aabb> =
-            (0..self.mesh.triangles.len()).map(|t| Aabb::around(self.mesh.corners(t))).collect();
-        let bvh = Bvh::new(&boxes);
+        self.shell.sign(stars.iter().flatten().flat_map(|star| star.signed.iter().copied()));
         par::map_above(FEW, &vertices, |&v| {
-            stars[v as usize].as_ref().is_some_and(|star| {
-                self.is_passed_upward(v, star.direction, &signed, &|cell, found| {
-                    bvh.touching(&boxes, cell, found);
-                })
+            stars[v as usize].as_ref().and_then(|star| star.direction).is_some_and(|up| {
+                let own = &self.around[v as usize];
+                let corners = own.iter().flat_map(|&t| self.mesh.corners(t as usize));
+                let near = grown(Aabb::of(corners), NEAR * self.tolerance);
+                self.shell.is_passed_upward(near, up, own.iter().copied())
             })
         })
     }
@@ -80,49 +75,10 @@ impl Shelled<'_> {
         let cell = Self::room(self.mesh, triangles, self.tolerance);
         let local = Local::of(self.fields.within(vertex, cell), cell)?;
         let own = triangles.iter().copied().filter(|&t| self.mesh.triangles[t as usize][0] == vertex);
-        let posts = |t: u32| self.mesh.triangles[t as usize].map(|id| self.posts[id as usize]);
-        let signed = own.filter(|&t| local.has_signs(&posts(t))).collect();
+        let signed = own.filter(|&t| self.shell.has_signs(t, &local)).collect();
         let steep = local.most <= STEEPEST * local.least;
-        steep.then_some(Star { direction: local.direction, signed })
+        Some(Star { direction: steep.then_some(local.direction), signed })
     }
-
-    /// Whether signs are known all around the star, and a line through it meets no triangle that faces down.
-    fn is_passed_upward(
-        &self,
-        vertex: u32,
-        up: Vec3,
-        signed: &[bool],
-        near: &dyn Fn(Aabb, &mut dyn FnMut(u32)),
-    ) -> bool {
-        let star = &self.around[vertex as usize];
-        let area = |t: u32| {
-            let [a, b, c] = self.mesh.corners(t as usize);
-            (b - a).cross(c - a).dot(up)
-        };
-        let widest = star.iter().fold(star[0], |best, &t| if area(t) > area(best) { t } else { best });
-        if area(widest) <= 0.0 {
-            return false;
-        }
-        let on_line = center(self.mesh.corners(widest as usize));
-        let corners = star.iter().flat_map(|&t| self.mesh.corners(t as usize));
-        let mut passed = true;
-        near(grown(Aabb::of(corners), NEAR * self.tolerance), &mut |t| {
-            passed &= signed[t as usize] && (area(t) > 0.0 || self.is_beside(t, on_line, up));
-        });
-        passed
-    }
-
-    /// Whether a line passes beside a triangle.
-    fn is_beside(&self, triangle: u32, on_line: Vec3, along: Vec3) -> bool {
-        let corners = self.mesh.corners(triangle as usize);
-        let middle = center(corners);
-        let radius = corners.iter().fold(0.0, |most: f64, p| most.max(p.distance(middle)));
-        (middle - on_line).cross(along).length() > 1.001 * radius
-    }
-}
-
-fn center([a, b, c]: [Vec3; 3]) -> Vec3 {
-    (a + b + c) / 3.0
 }
 
 pub(super) fn grown(cell: Aabb, distance: f64) -> Aabb {

@@ -2,9 +2,9 @@
 
 use super::anchor::grown;
 use super::fields::Fields;
-use super::shell::{Local, Post, most_of_products};
 use crate::math::{Aabb, Vec3};
 use crate::mesh::Mesh;
+use crate::sdf::{Local, Post, most_of_products};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

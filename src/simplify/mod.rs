@@ -23,16 +23,14 @@
 mod anchor;
 mod collapse;
 mod fields;
-mod shell;
 
 use crate::math::Aabb;
 use crate::mesh::{Mesh, Solid, crossing_pairs};
 use crate::par;
-use crate::sdf::Field;
+use crate::sdf::{Field, Post, Shell};
 use anchor::Shelled;
 use collapse::Collapse;
 use fields::Fields;
-use shell::Post;
 
 /// A solid with edges collapsed.
 #[derive(Clone, Debug)]
@@ -80,11 +78,13 @@ pub fn to_field(field: &dyn Field, solid: &Solid, tolerance: f64) -> Simplified 
         let cell = boxes[v as usize];
         Post::at(mesh.positions[v as usize], fields.within(v, cell), tolerance)
     });
-    let shelled = Shelled { mesh, around: &around, posts: &posts, fields: &fields, tolerance };
+    let mut shelled =
+        Shelled { mesh, around: &around, shell: Shell::new(mesh, posts), fields: &fields, tolerance };
     let mut free = shelled.anchored();
+    let posts = shelled.shell.posts();
     let mut reach = 0.0;
     while free.contains(&true) {
-        let mut collapse = Collapse::new(mesh, around.clone(), &posts, &fields, tolerance, &free);
+        let mut collapse = Collapse::new(mesh, around.clone(), posts, &fields, tolerance, &free);
         collapse.run();
         let collapsed = collapse.collapsed;
         let (fewer, changed) = collapse.finish(&mesh.triangles);

@@ -1,7 +1,11 @@
 //! The shell around a mesh: both its sides, moved out and in by the tolerance, and proofs of the field's sign there.
 
+mod winding;
+
 use crate::math::{Aabb, Interval, Mat3, Vec3};
 use crate::sdf::{Curvature, Field, Slopes};
+
+pub(crate) use winding::Shell;
 
 /// Shifts fall short of the tolerance by more than rounding.
 const SHORT: f64 = 1.0 - 1e-9;
@@ -11,9 +15,9 @@ const DEEPEST: u32 = 3;
 
 /// A vertex moved to both sides along the field's gradient, and the field there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Post {
+pub(crate) struct Post {
     /// Of length 1, or zero where the field has no gradient.
-    pub(super) direction: Vec3,
+    pub(crate) direction: Vec3,
     /// Outward and inward.
     places: [Vec3; 2],
     /// There, the second with its sign changed: both should be positive.
@@ -21,7 +25,7 @@ pub(super) struct Post {
 }
 
 impl Post {
-    pub(super) fn at(point: Vec3, field: &dyn Field, tolerance: f64) -> Post {
+    pub(crate) fn at(point: Vec3, field: &dyn Field, tolerance: f64) -> Post {
         let gradient = field.gradient(point).1;
         let direction = if gradient.is_finite() { gradient.normalize_or_zero() } else { Vec3::ZERO };
         let shift = direction * (SHORT * tolerance);
@@ -30,19 +34,19 @@ impl Post {
     }
 
     /// Whether the field has the signs at both ends that it should have.
-    pub(super) fn stands(&self) -> bool {
+    pub(crate) fn stands(&self) -> bool {
         self.values[0] > 0.0 && self.values[1] > 0.0
     }
 }
 
 /// What is known of a field in a box: it grows along a direction, at rates between two bounds.
-pub(super) struct Local<'f> {
+pub(crate) struct Local<'f> {
     field: &'f dyn Field,
-    pub(super) direction: Vec3,
+    pub(crate) direction: Vec3,
     /// The least slope along the direction, positive.
-    pub(super) least: f64,
+    pub(crate) least: f64,
     /// The greatest along any.
-    pub(super) most: f64,
+    pub(crate) most: f64,
     bend: Option<Bend>,
 }
 
@@ -54,7 +58,7 @@ struct Bend {
 
 impl<'f> Local<'f> {
     /// `None` where ranges do not show a direction in which the field grows.
-    pub(super) fn of(field: &'f dyn Field, cell: Aabb) -> Option<Local<'f>> {
+    pub(crate) fn of(field: &'f dyn Field, cell: Aabb) -> Option<Local<'f>> {
         let (slopes, hessian) = match field.curvature(cell) {
             Some(Curvature { slopes, hessian }) => (slopes, Some(hessian)),
             None => (field.slopes(cell)?, None),
@@ -70,9 +74,14 @@ impl<'f> Local<'f> {
         (least > 0.0).then(|| Local { field, direction, least, most, bend: hessian.and_then(Bend::of) })
     }
 
+    /// A bound of second derivatives along straight lines, when there is one.
+    pub(crate) fn bend(&self) -> Option<f64> {
+        self.bend.as_ref().map(Bend::largest)
+    }
+
     /// Whether the field is proven positive all over the outer side of a triangle, and negative over the inner one. Both
     /// must lie in the box.
-    pub(super) fn has_signs(&self, posts: &[Post; 3]) -> bool {
+    pub(crate) fn has_signs(&self, posts: &[Post; 3]) -> bool {
         if !posts.iter().all(Post::stands) {
             return false;
         }
@@ -99,6 +108,12 @@ impl Bend {
         Some(Bend { middle, spread })
     }
 
+    fn largest(&self) -> f64 {
+        let rows = self.middle.transpose();
+        let sums = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.abs().element_sum());
+        sums.into_iter().fold(0.0, f64::max) * (1.0 + 1e-9) + self.spread
+    }
+
     /// How far, at most, the field is below (`sign` 1) or above (-1) its linear interpolation on a triangle.
     ///
     /// At the point of barycentric coordinates a_i the difference is half the sum over pairs of a_i a_j times the second
@@ -114,7 +129,7 @@ impl Bend {
 
 /// The greatest sum of q_ij a_i a_j over barycentric coordinates, but for negative q, taken for zero: of squared edges the
 /// square of the radius around an acute triangle, and a quarter of the longest for others.
-pub(super) fn most_of_products(q: [f64; 3]) -> f64 {
+pub(crate) fn most_of_products(q: [f64; 3]) -> f64 {
     let [a, b, c] = q.map(|q| q.max(0.0));
     let longest = a.max(b).max(c);
     if 2.0 * longest >= a + b + c {
