@@ -7,8 +7,9 @@
 use super::extract::Extracted;
 use super::lattice::Map;
 use super::refine::{Leaf, Refinement};
+use super::shells::{self, Held};
 use super::tetrahedron::{EDGES, LAST_GENERATION};
-use super::{Places, near::distance_to_triangle, shells};
+use super::{Places, near::distance_to_triangle};
 use crate::math::{Aabb, Interval, Vec3};
 use crate::par;
 use crate::sdf::{Curvature, Field, Shell};
@@ -17,15 +18,17 @@ use crate::sdf::{Curvature, Field, Shell};
 pub(super) struct Proof {
     /// By generation and place among its leaves.
     pub(super) failed: Vec<[usize; 2]>,
+    /// Those that wait for others.
+    blocked: Vec<[usize; 2]>,
     pub(super) unproven: Places,
     /// Those that have been proven.
     pub(super) proven: Vec<[usize; 2]>,
 }
 
 impl Proof {
-    /// Counts what failed as unproven.
+    /// Counts what failed, and what waits for that, as unproven.
     pub(super) fn give_up(&mut self, refinement: &Refinement<'_>) {
-        for [generation, index] in std::mem::take(&mut self.failed) {
+        for [generation, index] in self.failed.drain(..).chain(self.blocked.drain(..)) {
             let leaf = &refinement.leaves[generation][index];
             self.unproven.add(leaf.tetrahedron.bounds(&refinement.nodes));
         }
@@ -35,6 +38,8 @@ impl Proof {
 #[derive(Clone, Copy, PartialEq)]
 enum Outcome {
     Proven,
+    /// Halving something beside it may help.
+    Blocked,
     Failed,
     Unproven,
 }
@@ -47,12 +52,20 @@ pub(super) fn prove(refinement: &Refinement<'_>, extracted: &Extracted) -> Proof
     for (generation, leaves) in refinement.leaves.iter().enumerate() {
         names.extend((0..leaves.len()).filter(|&i| !leaves[i].proven).map(|i| [generation, i]));
     }
-    let outcome = |&name: &[usize; 2]| judge(name, refinement, &pieces, &shell);
-    let outcomes = par::map_above(64, &names, outcome);
-    let mut proof = Proof { failed: Vec::new(), unproven: Places::default(), proven: Vec::new() };
+    let outcome = |&name: &[usize; 2]| judge(name, refinement, &pieces, &shell, false);
+    let mut outcomes = par::map_above(64, &names, outcome);
+    if !outcomes.contains(&Outcome::Failed) {
+        let blocked: Vec<usize> = (0..names.len()).filter(|&i| outcomes[i] == Outcome::Blocked).collect();
+        let again = |&i: &usize| judge(names[i], refinement, &pieces, &shell, true);
+        let found = par::map_above(64, &blocked, again);
+        blocked.into_iter().zip(found).for_each(|(i, outcome)| outcomes[i] = outcome);
+    }
+    let mut proof =
+        Proof { failed: Vec::new(), blocked: Vec::new(), unproven: Places::default(), proven: Vec::new() };
     for (name, outcome) in names.into_iter().zip(outcomes) {
         match outcome {
             Outcome::Proven => proof.proven.push(name),
+            Outcome::Blocked => proof.blocked.push(name),
             Outcome::Failed => proof.failed.push(name),
             Outcome::Unproven => {
                 let leaf = &refinement.leaves[name[0]][name[1]];
@@ -110,7 +123,13 @@ impl<'m> Pieces<'m> {
     }
 }
 
-fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>, shell: &Shell<'_>) -> Outcome {
+fn judge(
+    name: [usize; 2],
+    refinement: &Refinement<'_>,
+    pieces: &Pieces<'_>,
+    shell: &Shell<'_>,
+    at_last: bool,
+) -> Outcome {
     let leaf = &refinement.leaves[name[0]][name[1]];
     let t = &leaf.tetrahedron;
     let corners = t.corners(&refinement.nodes);
@@ -127,17 +146,24 @@ fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>, she
         around: pieces.corners(&around),
     };
     let bend = prover.bend(cell);
-    let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
-    let signed = own.iter().all(|&t| shell.is_signed(t));
-    if (signed || prover.own.iter().all(near))
-        && (prover.has_no_zeros(corners, bend)
-            || shells::holds_zeros(shell, refinement, pieces.extracted, leaf, [&own, &around])
-            || prover.zeros_are_near(corners, bend, &prover.around, 0))
-    {
-        return Outcome::Proven;
-    }
     let size = t.size(&refinement.nodes);
     let last = t.generation == LAST_GENERATION || 0.5 * size < sizes.least;
+    let signed = own.iter().all(|&t| shell.is_signed(t));
+    if !signed && bend.is_some() && !last && own.iter().all(|&t| shell.stands(t)) {
+        return Outcome::Failed;
+    }
+    let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
+    if signed || prover.own.iter().all(near) {
+        if prover.has_no_zeros(corners, bend) {
+            return Outcome::Proven;
+        }
+        match shells::holds_zeros(shell, refinement, pieces.extracted, leaf, [&own, &around]) {
+            Held::Yes => return Outcome::Proven,
+            Held::Perhaps if !at_last => return Outcome::Blocked,
+            _ if prover.zeros_are_near(corners, bend, &prover.around, 0) => return Outcome::Proven,
+            _ => {}
+        }
+    }
     // Halving does not help where the field jumps, nor where ranges see a sheet that is not there.
     let hopeless = !t.one_sheet && size <= sizes.search && !t.is_crossed(&refinement.nodes)
         || !field.range(cell).is_some_and(|range| range.continuous && range.defined);

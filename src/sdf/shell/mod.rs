@@ -13,6 +13,9 @@ const SHORT: f64 = 1.0 - 1e-9;
 /// Times that a triangle is quartered where slopes alone are known.
 const DEEPEST: u32 = 3;
 
+/// Times that it is where second derivatives are: bounds of these are then good enough.
+const QUARTERINGS: u32 = 2;
+
 /// A vertex moved to both sides along the field's gradient, and the field there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Post {
@@ -87,11 +90,38 @@ impl<'f> Local<'f> {
         }
         [1.0, -1.0].into_iter().zip(0..).all(|(sign, side): (f64, usize)| {
             let corners = posts.map(|post| post.places[side]);
-            let least = posts.iter().fold(f64::INFINITY, |least: f64, post| least.min(post.values[side]));
-            let by_bend = |bend: &Bend| bend.bulge(corners, sign) * (1.0 + 1e-9) < least;
-            self.bend.as_ref().is_some_and(by_bend)
-                || self.bend.is_none() && keeps_sign(self.field, corners, sign, DEEPEST)
+            match &self.bend {
+                Some(bend) => {
+                    let bulge = bend.bulge(corners, sign) * (1.0 + 1e-9);
+                    self.stays_above(corners, posts.map(|post| post.values[side]), sign, bulge, QUARTERINGS)
+                }
+                None => keeps_sign(self.field, corners, sign, DEEPEST),
+            }
         })
+    }
+
+    /// Whether `sign` times the field is positive all over a triangle, given that at the corners and how far it may be below
+    /// its linear interpolation.
+    fn stays_above(&self, corners: [Vec3; 3], values: [f64; 3], sign: f64, bulge: f64, depth: u32) -> bool {
+        if values.iter().all(|&value| value > bulge) {
+            return true;
+        }
+        if depth == 0 {
+            return false;
+        }
+        let [a, b, c] = corners;
+        let middles = [0.5 * (b + c), 0.5 * (c + a), 0.5 * (a + b)];
+        let between = middles.map(|p| sign * self.field.value(p));
+        // Halved edges bend by a quarter.
+        let bulge = 0.25 * bulge;
+        let positive = |value: &f64| *value > 0.0;
+        between.iter().all(positive)
+            && self.stays_above(middles, between, sign, bulge, depth - 1)
+            && (0..3).all(|i| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let quarter = [corners[i], middles[k], middles[j]];
+                self.stays_above(quarter, [values[i], between[k], between[j]], sign, bulge, depth - 1)
+            })
     }
 }
 
