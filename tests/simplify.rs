@@ -187,7 +187,7 @@ fn what_is_not_round_stays() {
 
     let block = Aabb { min: Vec3::splat(-0.9), max: Vec3::splat(0.9) };
     let gyroid = primitive(Primitive::Periodic { kind: Periodic::Gyroid, period: 1.5 }).tape();
-    let options = Options { bounds: Some(block), ..Options::new(0.02) };
+    let options = Options { bounds: Some(block), ..Options::new(0.005) };
     let (meshed, fewer) = coarsened(&gyroid, &options, "gyroid");
     let on_border = |p: &&Vec3| p.abs().max_element() == 0.9;
     let [before, after] =

@@ -66,9 +66,12 @@ impl<'f> Local<'f> {
             Some(Curvature { slopes, hessian }) => (slopes, Some(hessian)),
             None => (field.slopes(cell)?, None),
         };
-        let Slopes { gradient, .. } = slopes;
+        let Slopes { mut gradient, .. } = slopes;
         if !gradient.iter().all(|g| g.is_bounded()) {
             return None;
+        }
+        if let Some(hessian) = hessian {
+            narrow(&mut gradient, field, cell, hessian);
         }
         let direction = Vec3::from_array(gradient.map(Interval::middle)).try_normalize()?;
         let along = |k: usize| (gradient[k].lo * direction[k]).min(gradient[k].hi * direction[k]);
@@ -122,6 +125,21 @@ impl<'f> Local<'f> {
                 let quarter = [corners[i], middles[k], middles[j]];
                 self.stays_above(quarter, [values[i], between[k], between[j]], sign, bulge, depth - 1)
             })
+    }
+}
+
+/// Narrows slopes over a cell by those in its middle and second derivatives: the mean-value form.
+fn narrow(gradient: &mut [Interval; 3], field: &dyn Field, cell: Aabb, hessian: [Interval; 6]) {
+    let [xx, yy, zz, yz, zx, xy] = hessian.map(Interval::magnitude);
+    let half = 0.5 * cell.size();
+    let (_, middle) = field.gradient(cell.center());
+    let rows = [Vec3::new(xx, xy, zx), Vec3::new(xy, yy, yz), Vec3::new(zx, yz, zz)];
+    for (k, row) in rows.into_iter().enumerate() {
+        let reach = row.dot(half) * (1.0 + 1e-9) + 1e-12 * middle[k].abs();
+        let narrower = gradient[k].intersection(Interval::new(middle[k] - reach, middle[k] + reach));
+        if reach.is_finite() && !narrower.is_empty() {
+            gradient[k] = narrower;
+        }
     }
 }
 

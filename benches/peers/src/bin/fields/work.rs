@@ -12,6 +12,7 @@ use ogee::csg::{self, BuildOptions, Shape};
 use ogee::isosurface;
 use ogee::math::Vec3;
 use ogee::mesh::Mesh;
+use ogee::simplify;
 use std::error::Error;
 use std::fs;
 use std::path::Path;
@@ -102,11 +103,12 @@ fn by_recipe(model: &Model, tolerance: f64) -> Result<Made, Box<dyn Error>> {
 }
 
 fn by_field(model: &Model, tolerance: f64) -> Result<Made, Box<dyn Error>> {
-    let meshed = isosurface::mesh(&model.field.tape(), &isosurface::Options::new(tolerance))?;
+    let field = model.field.tape();
+    let meshed = isosurface::mesh(&field, &isosurface::Options::new(tolerance))?;
     if meshed.report.certified.is_none() {
         eprintln!("{}: {} cells are not proven", model.name, meshed.report.unproven.count);
     }
-    Ok(Made::Mesh(meshed.mesh.into_mesh()))
+    Ok(Made::Mesh(simplify::to_field(&field, &meshed.mesh, tolerance).mesh.into_mesh()))
 }
 
 /// Compiling counts, as it does on our side.
