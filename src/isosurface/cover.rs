@@ -193,3 +193,68 @@ fn hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
     whole.extend(chain(&mut points.iter().rev().copied()));
     whole
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn point(reach: f64) -> impl Strategy<Value = Vec3> {
+        [-reach..reach, -reach..reach, -0.2..0.2].prop_map(Vec3::from_array)
+    }
+
+    /// Two triangles with a side in common, and some more.
+    fn roof() -> impl Strategy<Value = Vec<[Vec3; 3]>> {
+        (proptest::array::uniform4(point(1.0)), proptest::collection::vec(point(1.5), 6)).prop_map(
+            |([a, b, c, d], more)| {
+                let mut triangles = vec![[a, b, c], [a, c, d]];
+                triangles.extend(more.as_chunks().0);
+                triangles
+            },
+        )
+    }
+
+    proptest! {
+        /// Wherever it says yes, points between the corners are near.
+        #[test]
+        fn what_is_covered_is_near(
+            triangles in roof(),
+            points in proptest::collection::vec(point(0.5), 4..9),
+            shares in proptest::collection::vec(proptest::collection::vec(0.0..1.0_f64, 8), 50),
+            reach in 0.1..0.6,
+        ) {
+            if is_covered(&points, Vec3::Z, triangles.iter(), reach) {
+                for share in shares {
+                    let sum: f64 = share.iter().zip(&points).map(|(s, _)| s).sum();
+                    let p = share.iter().zip(&points).map(|(s, p)| *p * (s / sum)).sum::<Vec3>();
+                    let distance = |t: &[Vec3; 3]| distance_to_triangle(*t, p).length();
+                    let nearest = triangles.iter().map(distance).fold(f64::INFINITY, f64::min);
+                    prop_assert!(nearest <= reach, "{nearest} of {reach}");
+                }
+            }
+        }
+    }
+
+    /// A square of many triangles covers what is thinner than the reach, whatever edges run through it, and not what
+    /// reaches beyond it.
+    #[test]
+    fn several_triangles_cover_together() {
+        let corner = |i: i32, j: i32| Vec3::new(f64::from(i), f64::from(j), 0.0);
+        let cells = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
+        let triangles: Vec<[Vec3; 3]> = cells
+            .flat_map(|(i, j)| {
+                let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect();
+        let covers = |least: f64, most: f64, height: f64| {
+            let ends = [[least, 0.5], [most, 0.7], [2.1, most], [1.3, 2.9]];
+            let points: Vec<Vec3> =
+                ends.iter().flat_map(|&[x, y]| [0.0, height].map(|z| Vec3::new(x, y, z))).collect();
+            is_covered(&points, Vec3::new(0.0, 0.0, -2.0), triangles.iter(), 0.01)
+        };
+        assert!(covers(0.2, 3.8, 0.009) && covers(0.0, 4.0, 0.009));
+        assert!(!covers(0.2, 3.8, 0.011) && !covers(0.2, 4.02, 0.009));
+        assert!(covers(-0.004, 4.0, 0.005));
+    }
+}
