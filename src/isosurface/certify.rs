@@ -7,28 +7,27 @@
 use super::extract::Extracted;
 use super::lattice::Map;
 use super::refine::{Leaf, Refinement};
-use super::shells::{self, Held};
+use super::shells;
 use super::tetrahedron::{EDGES, LAST_GENERATION};
-use super::{Places, near::distance_to_triangle};
+use super::{Places, cover::is_covered};
 use crate::math::{Aabb, Interval, Vec3};
 use crate::par;
 use crate::sdf::{Curvature, Field, Shell};
+use std::borrow::Cow;
 
 /// Leaves that must be halved, and those that cannot be.
 pub(super) struct Proof {
     /// By generation and place among its leaves.
     pub(super) failed: Vec<[usize; 2]>,
-    /// Those that wait for others.
-    blocked: Vec<[usize; 2]>,
     pub(super) unproven: Places,
     /// Those that have been proven.
     pub(super) proven: Vec<[usize; 2]>,
 }
 
 impl Proof {
-    /// Counts what failed, and what waits for that, as unproven.
+    /// Counts what failed as unproven.
     pub(super) fn give_up(&mut self, refinement: &Refinement<'_>) {
-        for [generation, index] in self.failed.drain(..).chain(self.blocked.drain(..)) {
+        for [generation, index] in std::mem::take(&mut self.failed) {
             let leaf = &refinement.leaves[generation][index];
             self.unproven.add(leaf.tetrahedron.bounds(&refinement.nodes));
         }
@@ -38,8 +37,6 @@ impl Proof {
 #[derive(Clone, Copy, PartialEq)]
 enum Outcome {
     Proven,
-    /// Halving something beside it may help.
-    Blocked,
     Failed,
     Unproven,
 }
@@ -52,20 +49,12 @@ pub(super) fn prove(refinement: &Refinement<'_>, extracted: &Extracted) -> Proof
     for (generation, leaves) in refinement.leaves.iter().enumerate() {
         names.extend((0..leaves.len()).filter(|&i| !leaves[i].proven).map(|i| [generation, i]));
     }
-    let outcome = |&name: &[usize; 2]| judge(name, refinement, &pieces, &shell, false);
-    let mut outcomes = par::map_above(64, &names, outcome);
-    if !outcomes.contains(&Outcome::Failed) {
-        let blocked: Vec<usize> = (0..names.len()).filter(|&i| outcomes[i] == Outcome::Blocked).collect();
-        let again = |&i: &usize| judge(names[i], refinement, &pieces, &shell, true);
-        let found = par::map_above(64, &blocked, again);
-        blocked.into_iter().zip(found).for_each(|(i, outcome)| outcomes[i] = outcome);
-    }
-    let mut proof =
-        Proof { failed: Vec::new(), blocked: Vec::new(), unproven: Places::default(), proven: Vec::new() };
+    let outcome = |&name: &[usize; 2]| judge(name, refinement, &pieces, &shell);
+    let outcomes = par::map_above(64, &names, outcome);
+    let mut proof = Proof { failed: Vec::new(), unproven: Places::default(), proven: Vec::new() };
     for (name, outcome) in names.into_iter().zip(outcomes) {
         match outcome {
             Outcome::Proven => proof.proven.push(name),
-            Outcome::Blocked => proof.blocked.push(name),
             Outcome::Failed => proof.failed.push(name),
             Outcome::Unproven => {
                 let leaf = &refinement.leaves[name[0]][name[1]];
@@ -123,13 +112,7 @@ impl<'m> Pieces<'m> {
     }
 }
 
-fn judge(
-    name: [usize; 2],
-    refinement: &Refinement<'_>,
-    pieces: &Pieces<'_>,
-    shell: &Shell<'_>,
-    at_last: bool,
-) -> Outcome {
+fn judge(name: [usize; 2], refinement: &Refinement<'_>, pieces: &Pieces<'_>, shell: &Shell<'_>) -> Outcome {
     let leaf = &refinement.leaves[name[0]][name[1]];
     let t = &leaf.tetrahedron;
     let corners = t.corners(&refinement.nodes);
@@ -146,24 +129,17 @@ fn judge(
         around: pieces.corners(&around),
     };
     let bend = prover.bend(cell);
+    let signed = own.iter().all(|&t| shell.is_signed(t));
+    let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
+    if (signed || prover.own.iter().all(near))
+        && (prover.has_no_zeros(corners, bend)
+            || shells::holds_zeros(shell, refinement, pieces.extracted, leaf, [&own, &around])
+            || prover.zeros_are_near(corners, bend, &prover.around, 0))
+    {
+        return Outcome::Proven;
+    }
     let size = t.size(&refinement.nodes);
     let last = t.generation == LAST_GENERATION || 0.5 * size < sizes.least;
-    let signed = own.iter().all(|&t| shell.is_signed(t));
-    if !signed && bend.is_some() && !last && own.iter().all(|&t| shell.stands(t)) {
-        return Outcome::Failed;
-    }
-    let near = |&triangle: &[Vec3; 3]| prover.triangle_is_near(triangle, bend, 0);
-    if signed || prover.own.iter().all(near) {
-        if prover.has_no_zeros(corners, bend) {
-            return Outcome::Proven;
-        }
-        match shells::holds_zeros(shell, refinement, pieces.extracted, leaf, [&own, &around]) {
-            Held::Yes => return Outcome::Proven,
-            Held::Perhaps if !at_last => return Outcome::Blocked,
-            _ if prover.zeros_are_near(corners, bend, &prover.around, 0) => return Outcome::Proven,
-            _ => {}
-        }
-    }
     // Halving does not help where the field jumps, nor where ranges see a sheet that is not there.
     let hopeless = !t.one_sheet && size <= sizes.search && !t.is_crossed(&refinement.nodes)
         || !field.range(cell).is_some_and(|range| range.continuous && range.defined);
@@ -247,7 +223,7 @@ impl Prover<'_> {
     }
 
     fn has_no_zeros(&self, corners: [Vec3; 4], bend: Option<f64>) -> bool {
-        self.linear(corners, bend).is_some_and(|(linear, slack)| {
+        self.linear(corners, bend).is_some_and(|(linear, slack, _)| {
             linear.iter().all(|&l| l > slack) || linear.iter().all(|&l| l < -slack)
         })
     }
@@ -261,7 +237,8 @@ impl Prover<'_> {
         triangles: &[[Vec3; 3]],
         depth: u32,
     ) -> bool {
-        let (linear, slack) = self.linear(corners, bend).unwrap_or(([0.0; 4], f64::INFINITY));
+        let unknown = ([0.0; 4], f64::INFINITY, Vec3::ZERO);
+        let (linear, slack, along) = self.linear(corners, bend).unwrap_or(unknown);
         if linear.iter().all(|&l| l > slack) || linear.iter().all(|&l| l < -slack) {
             return true;
         }
@@ -271,9 +248,13 @@ impl Prover<'_> {
         let steepness = linear.iter().fold(0.0, |most: f64, l| most.max((l - linear[0]).abs())) / length;
         let thin = slack <= 2.0 * steepness * self.tolerance || length <= 2.0 * self.tolerance;
         let cell = grown(Aabb::of(corners), self.tolerance);
-        let near: Vec<[Vec3; 3]> =
-            triangles.iter().copied().filter(|&triangle| Aabb::of(triangle).touches(cell)).collect();
-        if thin && self.is_covered(&slab(corners, linear, slack), &near) {
+        let mut near = Cow::Borrowed(triangles);
+        if thin || depth.is_multiple_of(3) {
+            let touches = |triangle: &[Vec3; 3]| Aabb::around(*triangle).touches(cell);
+            near = Cow::Owned(triangles.iter().copied().filter(touches).collect());
+        }
+        let all = self.own.iter().chain(near.iter());
+        if thin && is_covered(&slab(corners, linear, slack), along, all, self.tolerance) {
             return true;
         }
         if depth > 40 || length < 0.25 * self.tolerance || (bend.is_some() && depth > 9) {
@@ -288,14 +269,15 @@ impl Prover<'_> {
         })
     }
 
-    /// A linear function by its values at the corners, and how far the field can be from it.
-    fn linear(&self, corners: [Vec3; 4], bend: Option<f64>) -> Option<([f64; 4], f64)> {
+    /// A linear function by its values at the corners, how far the field can be from it, and its gradient.
+    fn linear(&self, corners: [Vec3; 4], bend: Option<f64>) -> Option<([f64; 4], f64, Vec3)> {
         let middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
         let (value, gradient) = self.field.gradient(middle);
         let from = corners.map(|p| p - middle);
         if let Some(bend) = bend {
             let radius = from.iter().fold(0.0, |most: f64, d| most.max(d.length_squared()));
-            return Some((from.map(|d| value + gradient.dot(d)), 0.5 * bend * radius * (1.0 + 1e-9)));
+            let slack = 0.5 * bend * radius * (1.0 + 1e-9);
+            return Some((from.map(|d| value + gradient.dot(d)), slack, gradient));
         }
         let slopes = self.field.slopes(Aabb::of(corners))?;
         if slopes.range.interval.is_empty() || !slopes.gradient.iter().all(|g| g.is_bounded()) {
@@ -304,16 +286,7 @@ impl Prover<'_> {
         let mean = Vec3::from_array(slopes.gradient.map(Interval::middle));
         let spread = Vec3::from_array(slopes.gradient.map(|g| 0.5 * g.width()));
         let slack = from.iter().fold(0.0, |most: f64, d| most.max(spread.dot(d.abs())));
-        Some((from.map(|d| value + mean.dot(d)), slack * (1.0 + 1e-9)))
-    }
-
-    /// Whether one triangle is within the tolerance of all points, and so of all between them.
-    fn is_covered(&self, points: &[Vec3], near: &[[Vec3; 3]]) -> bool {
-        let limit = self.tolerance * self.tolerance;
-        let covers = |triangle: &[Vec3; 3]| {
-            points.iter().all(|&p| distance_to_triangle(*triangle, p).length_squared() <= limit)
-        };
-        self.own.iter().any(covers) || near.iter().any(covers)
+        Some((from.map(|d| value + mean.dot(d)), slack * (1.0 + 1e-9), mean))
     }
 }
 

@@ -28,16 +28,6 @@ pub(super) const KNOWN: f64 = DEPTHS[1] + 2.0;
 /// Below this many leaves threads are not worth waking.
 const FEW: usize = 64;
 
-/// What the shell tells of the zeros in a leaf.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Held {
-    /// All are within it.
-    Yes,
-    /// It may tell once all triangles around have the right signs on both sides.
-    Perhaps,
-    No,
-}
-
 /// The shell around an extracted mesh.
 pub(super) fn shell<'m>(refinement: &Refinement<'_>, extracted: &'m Extracted) -> Shell<'m> {
     let tolerance = refinement.sizes.tolerance;
@@ -75,7 +65,7 @@ pub(super) fn holds_zeros(
     extracted: &Extracted,
     leaf: &Leaf,
     [own, around]: [&[u32]; 2],
-) -> Held {
+) -> bool {
     let tetrahedron = &leaf.tetrahedron;
     let leaf_cell = tetrahedron.bounds(&refinement.nodes);
     let (mut cell, mut way) = (leaf_cell, tetrahedron.size(&refinement.nodes));
@@ -83,7 +73,7 @@ pub(super) fn holds_zeros(
     if own.is_empty() {
         let distance = |t: &u32| center(extracted.mesh.corners(*t as usize)).distance(leaf_cell.center());
         let nearer = |a: &&u32, b: &&u32| distance(a).total_cmp(&distance(b)).then(a.cmp(b));
-        let Some(nearest) = around.iter().min_by(nearer) else { return Held::No };
+        let Some(nearest) = around.iter().min_by(nearer) else { return false };
         cell = cell.union(Aabb::around(extracted.mesh.corners(*nearest as usize)));
         way = cell.size().length();
         marks = std::slice::from_ref(nearest);
@@ -92,20 +82,16 @@ pub(super) fn holds_zeros(
     // What stands for the field in a leaf need not do so beyond it.
     let is_own = cell == leaf_cell;
     let field = if is_own { refinement.field(tetrahedron.field) } else { refinement.root() };
-    let mut held = Held::No;
-    for depth in DEPTHS {
-        let Some(local) = Local::of(field, grown(cell, (depth + 2.0) * tolerance)) else { continue };
-        let Some(bend) = local.bend() else { continue };
+    DEPTHS.into_iter().any(|depth| {
+        let known = Local::of(field, grown(cell, (depth + 2.0) * tolerance));
+        let Some((local, bend)) = known.and_then(|local| local.bend().map(|bend| (local, bend))) else {
+            return false;
+        };
         let needed = 2.0 * tolerance * local.most + 0.125 * bend * way * way;
-        if depth * tolerance * local.least > needed * (1.0 + 1e-9) {
-            let near = grown(cell, (depth + 1.0) * tolerance);
-            if shell.is_passed_upward(near, local.direction, marks.iter().copied()) {
-                return Held::Yes;
-            }
-            held = Held::Perhaps;
-        }
-    }
-    held
+        let near = grown(cell, (depth + 1.0) * tolerance);
+        depth * tolerance * local.least > needed * (1.0 + 1e-9)
+            && shell.is_passed_upward(near, local.direction, marks.iter().copied())
+    })
 }
 
 fn center([a, b, c]: [Vec3; 3]) -> Vec3 {

@@ -28,11 +28,6 @@ impl<'m> Shell<'m> {
         &self.posts
     }
 
-    /// Whether the field has the right signs at the ends of the posts of a triangle.
-    pub(crate) fn stands(&self, triangle: u32) -> bool {
-        self.mesh.triangles[triangle as usize].iter().all(|&id| self.posts[id as usize].stands())
-    }
-
     /// Whether signs on both sides of a triangle follow from what is known of the field in a box around them.
     pub(crate) fn has_signs(&self, triangle: u32, local: &Local<'_>) -> bool {
         local.has_signs(&self.mesh.triangles[triangle as usize].map(|id| self.posts[id as usize]))
