@@ -8,7 +8,7 @@ mod pairs;
 
 use crossing::{Crossings, crossings};
 use ogee::isosurface::{self, Meshed, Options};
-use ogee::math::{Aabb, Vec3, cos, exp, sin};
+use ogee::math::{Aabb, Vec3, cos, exp, hypot, sin};
 use ogee::mesh::{Defects, Solid};
 use ogee::sdf::{Blend, Expr, Field, Implicit, Periodic, Primitive, Tape};
 use ogee::simplify::{self, Simplified};
@@ -89,7 +89,7 @@ fn round_models_stay_within_the_tolerance_with_far_fewer_triangles() {
     let ball = primitive(Primitive::Sphere { radius: 0.8 });
     check("ball", &ball, 0.6, &|solid| off(solid, |p| p.length() - 0.8, around(Vec3::ZERO, 0.8, 2000)));
     let ring = primitive(Primitive::Torus { major: 0.6, minor: 0.3 });
-    let to_ring = |p: Vec3| ((p.x * p.x + p.y * p.y).sqrt() - 0.6).hypot(p.z) - 0.3;
+    let to_ring = |p: Vec3| hypot(hypot(p.x, p.y) - 0.6, p.z) - 0.3;
     let on_ring = || {
         (0..2000).map(|i| {
             let (u, v) = (TAU * f64::from(i) / 2000.0, 2.399_963_23 * f64::from(i));
@@ -118,7 +118,7 @@ fn small_bumps_are_kept() {
     let (_, fewer) = coarsened(&tape, &Options::new(tolerance), "bump");
     // Over the pole, where all is steep along z, the top of the bump.
     let height = |r: f64| {
-        let f = |z: f64| r.hypot(z) - 0.7 - 0.03 * exp(-400.0 * (r * r + (z - 0.7) * (z - 0.7)));
+        let f = |z: f64| hypot(r, z) - 0.7 - 0.03 * exp(-400.0 * (r * r + (z - 0.7) * (z - 0.7)));
         let (mut low, mut high) = (0.5, 1.0);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);

@@ -254,7 +254,7 @@ impl Prover<'_> {
             near = Cow::Owned(triangles.iter().copied().filter(touches).collect());
         }
         let all = self.own.iter().chain(near.iter());
-        if thin && is_covered(&slab(corners, linear, slack), along, all, self.tolerance) {
+        if thin && is_covered(&slab(corners, linear, slack), along, &all, self.tolerance) {
             return true;
         }
         if depth > 40 || length < 0.25 * self.tolerance || (bend.is_some() && depth > 9) {

@@ -13,7 +13,7 @@ use std::borrow::Cow;
 pub(super) fn is_covered<'t>(
     points: &[Vec3],
     along: Vec3,
-    triangles: impl Iterator<Item = &'t [Vec3; 3]> + Clone,
+    triangles: &(impl Iterator<Item = &'t [Vec3; 3]> + Clone),
     reach: f64,
 ) -> bool {
     let (Some(&origin), Some(normal)) = (points.first(), along.try_normalize()) else { return false };
@@ -223,7 +223,7 @@ mod tests {
             shares in proptest::collection::vec(proptest::collection::vec(0.0..1.0_f64, 8), 50),
             reach in 0.1..0.6,
         ) {
-            if is_covered(&points, Vec3::Z, triangles.iter(), reach) {
+            if is_covered(&points, Vec3::Z, &triangles.iter(), reach) {
                 for share in shares {
                     let sum: f64 = share.iter().zip(&points).map(|(s, _)| s).sum();
                     let p = share.iter().zip(&points).map(|(s, p)| *p * (s / sum)).sum::<Vec3>();
@@ -251,7 +251,7 @@ mod tests {
             let ends = [[least, 0.5], [most, 0.7], [2.1, most], [1.3, 2.9]];
             let points: Vec<Vec3> =
                 ends.iter().flat_map(|&[x, y]| [0.0, height].map(|z| Vec3::new(x, y, z))).collect();
-            is_covered(&points, Vec3::new(0.0, 0.0, -2.0), triangles.iter(), 0.01)
+            is_covered(&points, Vec3::new(0.0, 0.0, -2.0), &triangles.iter(), 0.01)
         };
         assert!(covers(0.2, 3.8, 0.009) && covers(0.0, 4.0, 0.009));
         assert!(!covers(0.2, 3.8, 0.011) && !covers(0.2, 4.02, 0.009));
