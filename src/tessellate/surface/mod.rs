@@ -12,6 +12,7 @@
 //! 1986). It bounds the distance from the mesh to the surface and from the surface to the mesh. Where only what bends across
 //! the surface counts, see the notes of `slide`.
 
+mod between;
 mod caps;
 mod check;
 mod edge;

@@ -2,6 +2,7 @@
 
 use super::slide::{Free, Slides, Turned};
 use super::{Guarantee, Precision, SurfaceOptions, TessellationError, check};
+use crate::math::Vec3;
 use crate::surface::{Bends, Jet, Side, Surface};
 
 /// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
@@ -9,7 +10,7 @@ const CELLS: [usize; 2] = [12, 32];
 /// Cells an axis for bounds that only say where to measure.
 const COARSE: usize = 4;
 /// Most parts of a side of a triangle that is measured closely.
-pub(super) const MOST_STEPS: usize = 12;
+pub(super) const MOST_STEPS: usize = 24;
 /// Share of the mixed derivative that counts as bending along an axis that has none of its own.
 const LEAST_SHARE: f64 = 0.1;
 
@@ -19,7 +20,7 @@ pub(super) struct Table {
     /// Second derivatives over tolerance, by uu, uv, vv.
     bends: Vec<[f64; 3]>,
     tolerances: Vec<f64>,
-    /// Bounds that say where to measure, where nothing is proven by them.
+    /// What says where to measure, where nothing is proven.
     lengths: Option<Lengths>,
     /// Where distances may be measured to other parameters than those of the triangle.
     slides: Slides,
@@ -61,16 +62,14 @@ impl Table {
             cells,
             bends: Vec::new(),
             tolerances: Vec::new(),
-            lengths: match options.guarantee {
-                Guarantee::Proven => None,
-                Guarantee::Measured => Lengths::bounds(surface, domain),
-            },
+            lengths: None,
             slides: Slides::default(),
             densities: Vec::new(),
             proven: bounds.is_some() || closed_form,
             closed_form,
         };
         let (mut turned, mut turns): (Vec<Option<Turned>>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
+        let mut lengths = Vec::new();
         for cell in 0..cells[0] * cells[1] {
             let (i, j) = (cell / cells[1], cell % cells[1]);
             let middle = [0.5 * at(0, i) + 0.5 * at(0, i + 1), 0.5 * at(1, j) + 0.5 * at(1, j + 1)];
@@ -78,6 +77,7 @@ impl Table {
             if jet.is_some_and(|jet| !jet.point.is_finite()) {
                 return Err(TessellationError::NotFinite { surface: index, parameters: middle });
             }
+            lengths.extend(jet.map(|jet| [jet.duu, jet.duv, jet.dvv].map(Vec3::length)));
             let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
             let tolerance = least_tolerance(surface, options, corners.map(|(i, j)| [at(0, i), at(1, j)]));
             let bend = match &bounds {
@@ -98,6 +98,10 @@ impl Table {
             table.tolerances.push(tolerance);
             turns.push(turn);
         }
+        if !table.proven {
+            let sampled = || Lengths { cells: cells[0], all: lengths, are_bounds: false };
+            table.lengths = Lengths::bounds(surface, domain).or_else(|| Some(sampled()));
+        }
         table.slides = Slides::new(domain, cells, turned, &table.bends, &table.tolerances);
         let density = |(cell, turn): (usize, [f64; 2])| {
             let plain = table.density_of(table.slides.bends_of(cell, table.bends[cell]));
@@ -117,17 +121,24 @@ impl Table {
         [0.5 * along_u.sqrt(), 0.5 * along_v.sqrt()]
     }
 
-    /// How many parts a side of a triangle must have for distances at the corners of the parts to tell those between them up
-    /// to a share of the tolerance: 0 where corners of the whole do or no bounds are known, no more than [`MOST_STEPS`].
-    pub(super) fn steps(&self, parameters: &[[f64; 2]; 3], share: f64) -> usize {
-        let Some(lengths) = &self.lengths else { return 0 };
-        let bends = lengths.around(self.met_of([COARSE; 2], parameters));
-        let whole = check::bound_by(bends, parameters) / self.tolerance(parameters);
+    /// How far a triangle is at most off the surface at the same parameters, over the tolerance, and whether that is a bound;
+    /// `None` where distances are proven otherwise.
+    pub(super) fn whole(&self, parameters: &[[f64; 2]; 3]) -> Option<(f64, bool)> {
+        let lengths = self.lengths.as_ref()?;
+        let bends = lengths.around(self.met_of([lengths.cells; 2], parameters));
+        Some((check::bound_by(bends, parameters) / self.tolerance(parameters), lengths.are_bounds))
+    }
+
+    /// Into how many parts each side of a triangle must be cut for distances at the corners of the parts to tell those between
+    /// them up to a share of the tolerance; `None` where no bend makes them more than the tolerance.
+    pub(super) fn parts(&self, parameters: &[[f64; 2]; 3], share: f64) -> Option<Parts> {
+        let (whole, is_bound) = self.whole(parameters)?;
         if whole <= 1.0 {
-            return 0;
+            return None;
         }
         // What lies between shrinks with the square of the parts; NaN asks for the most.
-        (whole / share).sqrt().ceil().min(MOST_STEPS as f64) as usize
+        let count = (whole / share).sqrt().ceil().min(MOST_STEPS as f64) as usize;
+        Some(Parts { count, rest: whole / (count * count) as f64, is_bound })
     }
 
     /// Cells that the box of some parameters meets, as ranges of indices.
@@ -189,12 +200,6 @@ impl Table {
         self.met_cells(parameters).map(|cell| self.tolerances[cell]).fold(f64::INFINITY, f64::min)
     }
 
-    /// The tolerance, where it is the same everywhere.
-    pub(super) fn same_tolerance(&self) -> Option<f64> {
-        let first = self.tolerances[0];
-        self.tolerances.iter().all(|&tolerance| tolerance == first).then_some(first)
-    }
-
     /// Segments that a length of 1 along an axis needs in a cell.
     pub(super) fn density(&self, i: usize, j: usize, axis: usize) -> f64 {
         let cell = i * self.cells[1] + j;
@@ -210,8 +215,24 @@ impl Table {
     }
 }
 
-/// Bounds of the lengths of second derivatives by uu, uv and vv, on a coarse grid of cells.
-struct Lengths(Vec<[f64; 3]>);
+/// Where a triangle is looked at, at the corners of equal parts.
+#[derive(Clone, Copy)]
+pub(super) struct Parts {
+    /// Along each side.
+    pub(super) count: usize,
+    /// What may lie between, over the tolerance.
+    pub(super) rest: f64,
+    /// Whether that is proven.
+    pub(super) is_bound: bool,
+}
+
+/// The lengths of second derivatives by uu, uv and vv, on a grid of cells.
+struct Lengths {
+    cells: usize,
+    all: Vec<[f64; 3]>,
+    /// Bounds on a coarse grid, or what they are in the middle of each cell of a fine one.
+    are_bounds: bool,
+}
 
 impl Lengths {
     fn bounds(surface: &dyn Surface, domain: [[f64; 2]; 2]) -> Option<Lengths> {
@@ -223,13 +244,14 @@ impl Lengths {
             let (i, j) = (k / COARSE, k % COARSE);
             surface.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
         };
-        (0..COARSE * COARSE).map(cell).collect::<Option<Vec<_>>>().map(Lengths)
+        let all = (0..COARSE * COARSE).map(cell).collect::<Option<Vec<_>>>()?;
+        Some(Lengths { cells: COARSE, all, are_bounds: true })
     }
 
     /// The largest in a range of cells.
     fn around(&self, [[i0, i1], [j0, j1]]: [[usize; 2]; 2]) -> [f64; 3] {
-        let cells = (i0..=i1).flat_map(|i| (j0..=j1).map(move |j| i * COARSE + j));
-        cells.fold([0.0; 3], |most, cell| [0, 1, 2].map(|k: usize| most[k].max(self.0[cell][k])))
+        let cells = (i0..=i1).flat_map(|i| (j0..=j1).map(move |j| i * self.cells + j));
+        cells.fold([0.0; 3], |most, cell| [0, 1, 2].map(|k: usize| most[k].max(self.all[cell][k])))
     }
 }
 
