@@ -19,12 +19,18 @@
 use super::round_triangle::least_distance;
 use crate::math::{Vec3, hypot};
 
-/// A bound of the distance, both ways; infinite where the triangle comes to the ring or the axis, or has a side as long as the
-/// tube is thick, which may lead around it either way.
+/// A bound of the distance, both ways; infinite where the triangle comes to the ring or the axis, or has a side that may lead
+/// around the tube either way.
 pub(super) fn bound([major, minor]: [f64; 2], corners: [Vec3; 3]) -> f64 {
+    let least = least_distance(corners.map(|p| p.with_z(0.0)));
     let [a, b, c] = corners.map(|p| Corner::new(major, p));
     let sides = [(&a, &b), (&b, &c), (&c, &a)];
-    if sides.iter().any(|(p, q)| p.point.distance_squared(q.point) >= 4.0 * minor * minor) {
+    // Where every point of a side is nearer than the ring to one of its ends, heights and distances from the axis taken for
+    // coordinates, it leads around by less than two quarters; there it is a chord that bends toward the axis.
+    let reach = |p: &Corner, q: &Corner| {
+        0.5 * hypot(p.rho - q.rho, p.point.z - q.point.z) + p.turned(q) / (8.0 * least)
+    };
+    if least <= 0.0 || sides.iter().any(|(p, q)| reach(p, q) >= minor) {
         return f64::INFINITY;
     }
     let [ab, bc, ca] = sides.map(|(p, q)| Corner::new(major, 0.5 * p.point + 0.5 * q.point));
@@ -46,23 +52,24 @@ impl Corner {
         let across = rho - major;
         Corner { point, rho, square: across * across + point.z * point.z }
     }
+
+    /// The w of two corners.
+    fn turned(&self, other: &Corner) -> f64 {
+        let (along, between) = (self.point - other.point, self.rho - other.rho);
+        (along.truncate().length_squared() - between * between).max(0.0)
+    }
 }
 
 /// A bound of |d - r| on a triangle.
 fn off(major: f64, minor: f64, corners: [&Corner; 3]) -> f64 {
     let rho = corners.map(|corner| corner.rho);
     let least = least_distance(corners.map(|corner| corner.point.with_z(0.0)));
-    if least <= 0.0 {
-        return f64::INFINITY;
-    }
     let most = rho.into_iter().fold(0.0, f64::max);
     let bends = [major / most, 2.0 * major / (least + rho.into_iter().fold(f64::INFINITY, f64::min))];
     let squares = corners.map(|corner| corner.square);
     let [inner, outer] = bends.map(|k| {
         let pair = |i: usize, j: usize| {
-            let along = corners[i].point - corners[j].point;
-            let between = rho[i] - rho[j];
-            k * (along.truncate().length_squared() - between * between).max(0.0) - along.length_squared()
+            k * corners[i].turned(corners[j]) - corners[i].point.distance_squared(corners[j].point)
         };
         range(squares, [pair(1, 2), pair(2, 0), pair(0, 1)])
     });

@@ -59,9 +59,9 @@ impl Refinement<'_> {
             let places = check::places(count);
             let found = check::distances(self.surface, &places, &parameters, &corners, |k| allowed[k]);
             for (k, found) in found.chunks(places.len()).enumerate() {
-                let (t, Parts { rest, is_bound, .. }) = with[k];
+                let (t, Parts { rest, .. }) = with[k];
                 let tolerance = allowed[k] / MEASURED_SHARE;
-                let rest = if is_bound || rest <= 1.0 - MEASURED_SHARE { rest * tolerance } else { 0.0 };
+                let rest = rest * tolerance;
                 let known = (self.told - rest).clamp(0.0, allowed[k]);
                 let most =
                     check::measure_folds(self.surface, &places, &parameters[k], corners[k], found, known);
@@ -86,22 +86,17 @@ impl Refinement<'_> {
     /// each part of it is within the tolerance of one flat triangle, at its corners and with what bends it between them.
     fn distance_back(&self, t: u32, tolerance: f64) -> f64 {
         let parameters = self.parameters(self.triangles[t as usize]);
-        let Some((whole, is_bound)) = self.table.whole(&parameters) else { return 0.0 };
+        let Some(whole) = self.table.whole(&parameters) else { return 0.0 };
         let part = Part { parameters, points: parameters.map(|[u, v]| self.surface.point(u, v)), cuts: 0 };
         let mut pending = vec![part];
         let mut most: f64 = 0.0;
         while let Some(part) = pending.pop() {
-            let bound = whole * tolerance / f64::from(1 << (2 * part.cuts));
-            let quarters = (!is_bound || bound > tolerance).then(|| part.quarters(self.surface));
-            let bend = match &quarters {
-                Some(quarters) if !is_bound => part.bend(quarters),
-                _ => bound,
-            };
+            let bend = whole * tolerance / f64::from(1 << (2 * part.cuts));
             let near = self.distance_to_one(t, &part.points, tolerance - bend);
             if near + bend <= tolerance {
                 most = most.max(near + bend);
             } else if part.cuts < MOST_CUTS {
-                pending.extend(quarters.unwrap_or_else(|| part.quarters(self.surface)));
+                pending.extend(part.quarters(self.surface));
             } else {
                 return if near.is_nan() { f64::INFINITY } else { near + bend };
             }
@@ -112,8 +107,8 @@ impl Refinement<'_> {
     /// The distance of some points from a single triangle, any that is enough or the nearest there is: from triangle to
     /// neighbouring triangle, the nearest first.
     fn distance_to_one(&self, start: u32, points: &[Vec3; 3], enough: f64) -> f64 {
-        /// Points slide over few triangles.
-        const MOST: usize = 64;
+        /// Points slide over few triangles: those around a corner, about.
+        const MOST: usize = 12;
         let distance = |t: u32| {
             let corners = self.corners(self.triangles[t as usize]);
             let of = |point: &Vec3| least_distance(corners.map(|corner| corner - *point));
@@ -147,7 +142,7 @@ impl Refinement<'_> {
             let tolerance = self.table.tolerance(own);
             let between = match self.table.whole(own) {
                 // The usual places are the corners and the middle of halves.
-                Some((whole, _)) if whole <= 1.0 => (whole * tolerance).min(found + 0.25 * whole * tolerance),
+                Some(whole) if whole <= 1.0 => (whole * tolerance).min(found + 0.25 * whole * tolerance),
                 _ => found,
             };
             told = told.max(between).max(found);
@@ -183,14 +178,6 @@ struct Part {
 }
 
 impl Part {
-    /// How far the middles of the sides are off those of flat ones.
-    fn bend(&self, quarters: &[Part; 4]) -> f64 {
-        let [a, b, c] = self.points;
-        let [ab, bc, ca] = quarters[3].points;
-        let off = |p: Vec3, q: Vec3, between: Vec3| (0.5 * p + 0.5 * q - between).length();
-        off(a, b, ab).max(off(b, c, bc)).max(off(c, a, ca))
-    }
-
     /// Three at its corners, and the one between them.
     fn quarters(&self, surface: &dyn Surface) -> [Part; 4] {
         let Part { parameters: [a, b, c], points: [p, q, r], .. } = *self;

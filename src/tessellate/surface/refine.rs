@@ -133,7 +133,8 @@ impl<'a> Refinement<'a> {
         let parameters = self.parameters(triangle);
         if self.table.proven {
             let ratio = if self.table.closed_form {
-                let bound = self.surface.triangle_bound(self.corners(triangle));
+                let bound = || self.surface.triangle_bound(self.corners(triangle));
+                let bound = bound().filter(|_| !self.table.goes_around(&parameters));
                 bound.unwrap_or(f64::INFINITY) / self.table.tolerance(&parameters)
             } else {
                 check::bound(self.table, self.surface, &parameters)

@@ -2,8 +2,7 @@
 
 use super::slide::{Free, Slides, Turned};
 use super::{Guarantee, Precision, SurfaceOptions, TessellationError, check};
-use crate::math::Vec3;
-use crate::surface::{Bends, Jet, Side, Surface};
+use crate::surface::{Bends, Gluing, Jet, Side, Surface};
 
 /// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
 const CELLS: [usize; 2] = [12, 32];
@@ -16,11 +15,13 @@ const LEAST_SHARE: f64 = 0.1;
 
 pub(super) struct Table {
     domain: [[f64; 2]; 2],
+    /// Whether the surface comes back to where it began along u, and along v.
+    closed: [bool; 2],
     pub(super) cells: [usize; 2],
     /// Second derivatives over tolerance, by uu, uv, vv.
     bends: Vec<[f64; 3]>,
     tolerances: Vec<f64>,
-    /// What says where to measure, where nothing is proven.
+    /// Bounds that say where to measure, where nothing is proven by them.
     lengths: Option<Lengths>,
     /// Where distances may be measured to other parameters than those of the triangle.
     slides: Slides,
@@ -59,17 +60,20 @@ impl Table {
         let needed = bounds.is_none() || options.angle.is_some();
         let mut table = Table {
             domain,
+            closed: [surface.sides().u, surface.sides().v].map(|gluing| gluing != Gluing::Open),
             cells,
             bends: Vec::new(),
             tolerances: Vec::new(),
-            lengths: None,
+            lengths: match options.guarantee {
+                Guarantee::Proven => None,
+                Guarantee::Measured => Lengths::bounds(surface, domain),
+            },
             slides: Slides::default(),
             densities: Vec::new(),
             proven: bounds.is_some() || closed_form,
             closed_form,
         };
         let (mut turned, mut turns): (Vec<Option<Turned>>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
-        let mut lengths = Vec::new();
         for cell in 0..cells[0] * cells[1] {
             let (i, j) = (cell / cells[1], cell % cells[1]);
             let middle = [0.5 * at(0, i) + 0.5 * at(0, i + 1), 0.5 * at(1, j) + 0.5 * at(1, j + 1)];
@@ -77,7 +81,6 @@ impl Table {
             if jet.is_some_and(|jet| !jet.point.is_finite()) {
                 return Err(TessellationError::NotFinite { surface: index, parameters: middle });
             }
-            lengths.extend(jet.map(|jet| [jet.duu, jet.duv, jet.dvv].map(Vec3::length)));
             let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
             let tolerance = least_tolerance(surface, options, corners.map(|(i, j)| [at(0, i), at(1, j)]));
             let bend = match &bounds {
@@ -98,10 +101,6 @@ impl Table {
             table.tolerances.push(tolerance);
             turns.push(turn);
         }
-        if !table.proven {
-            let sampled = || Lengths { cells: cells[0], all: lengths, are_bounds: false };
-            table.lengths = Lengths::bounds(surface, domain).or_else(|| Some(sampled()));
-        }
         table.slides = Slides::new(domain, cells, turned, &table.bends, &table.tolerances);
         let density = |(cell, turn): (usize, [f64; 2])| {
             let plain = table.density_of(table.slides.bends_of(cell, table.bends[cell]));
@@ -121,24 +120,20 @@ impl Table {
         [0.5 * along_u.sqrt(), 0.5 * along_v.sqrt()]
     }
 
-    /// How far a triangle is at most off the surface at the same parameters, over the tolerance, and whether that is a bound;
-    /// `None` where distances are proven otherwise.
-    pub(super) fn whole(&self, parameters: &[[f64; 2]; 3]) -> Option<(f64, bool)> {
-        let lengths = self.lengths.as_ref()?;
-        let bends = lengths.around(self.met_of([lengths.cells; 2], parameters));
-        Some((check::bound_by(bends, parameters) / self.tolerance(parameters), lengths.are_bounds))
+    /// How far a triangle is at most off the surface at the same parameters, over the tolerance; `None` where no bounds are
+    /// known, or distances are proven otherwise.
+    pub(super) fn whole(&self, parameters: &[[f64; 2]; 3]) -> Option<f64> {
+        let bends = self.lengths.as_ref()?.around(self.met_of([COARSE; 2], parameters));
+        Some(check::bound_by(bends, parameters) / self.tolerance(parameters))
     }
 
     /// Into how many parts each side of a triangle must be cut for distances at the corners of the parts to tell those between
     /// them up to a share of the tolerance; `None` where no bend makes them more than the tolerance.
     pub(super) fn parts(&self, parameters: &[[f64; 2]; 3], share: f64) -> Option<Parts> {
-        let (whole, is_bound) = self.whole(parameters)?;
-        if whole <= 1.0 {
-            return None;
-        }
         // What lies between shrinks with the square of the parts; NaN asks for the most.
+        let whole = self.whole(parameters).filter(|&whole| !(whole <= 1.0))?;
         let count = (whole / share).sqrt().ceil().min(MOST_STEPS as f64) as usize;
-        Some(Parts { count, rest: whole / (count * count) as f64, is_bound })
+        Some(Parts { count, rest: whole / (count * count) as f64 })
     }
 
     /// Cells that the box of some parameters meets, as ranges of indices.
@@ -155,6 +150,15 @@ impl Table {
             let least = all.into_iter().fold(f64::INFINITY, f64::min);
             let most = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
             [index(least), index(most)]
+        })
+    }
+
+    /// Whether a triangle goes half around a closed axis or farther: its corners do not tell which way.
+    pub(super) fn goes_around(&self, parameters: &[[f64; 2]; 3]) -> bool {
+        [0, 1].into_iter().filter(|&axis| self.closed[axis]).any(|axis| {
+            let all = || parameters.iter().map(|p| p[axis]);
+            let extent = all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min);
+            2.0 * extent >= self.domain[axis][1] - self.domain[axis][0]
         })
     }
 
@@ -222,17 +226,10 @@ pub(super) struct Parts {
     pub(super) count: usize,
     /// What may lie between, over the tolerance.
     pub(super) rest: f64,
-    /// Whether that is proven.
-    pub(super) is_bound: bool,
 }
 
-/// The lengths of second derivatives by uu, uv and vv, on a grid of cells.
-struct Lengths {
-    cells: usize,
-    all: Vec<[f64; 3]>,
-    /// Bounds on a coarse grid, or what they are in the middle of each cell of a fine one.
-    are_bounds: bool,
-}
+/// Bounds of the lengths of second derivatives by uu, uv and vv, on a coarse grid of cells.
+struct Lengths(Vec<[f64; 3]>);
 
 impl Lengths {
     fn bounds(surface: &dyn Surface, domain: [[f64; 2]; 2]) -> Option<Lengths> {
@@ -244,14 +241,13 @@ impl Lengths {
             let (i, j) = (k / COARSE, k % COARSE);
             surface.second_bounds([[at(0, i), at(0, i + 1)], [at(1, j), at(1, j + 1)]])
         };
-        let all = (0..COARSE * COARSE).map(cell).collect::<Option<Vec<_>>>()?;
-        Some(Lengths { cells: COARSE, all, are_bounds: true })
+        (0..COARSE * COARSE).map(cell).collect::<Option<Vec<_>>>().map(Lengths)
     }
 
     /// The largest in a range of cells.
     fn around(&self, [[i0, i1], [j0, j1]]: [[usize; 2]; 2]) -> [f64; 3] {
-        let cells = (i0..=i1).flat_map(|i| (j0..=j1).map(move |j| i * self.cells + j));
-        cells.fold([0.0; 3], |most, cell| [0, 1, 2].map(|k: usize| most[k].max(self.all[cell][k])))
+        let cells = (i0..=i1).flat_map(|i| (j0..=j1).map(move |j| i * COARSE + j));
+        cells.fold([0.0; 3], |most, cell| [0, 1, 2].map(|k: usize| most[k].max(self.0[cell][k])))
     }
 }
 
