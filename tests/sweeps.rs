@@ -76,7 +76,8 @@ fn distance_from_mesh(sweep: &Sweep, made: &Tessellation, tolerance: f64) -> f64
         for t in 0..made.mesh.triangles.len() {
             let corners = made.mesh.corners(t);
             // Boxes first.
-            let (low, high) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+            let (low, high) =
+                (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
             let outside = (low - point).max(point - high).max(Vec3::ZERO).length();
             if outside < least {
                 least = least.min(to_triangle(point, corners));
@@ -137,7 +138,10 @@ fn random_sweeps_become_solids_within_their_tolerance() {
         slowest = slowest.max((start.elapsed(), index));
     }
     println!("seed {seed}: {solids} of {count} are solids, of {triangles} triangles in all");
-    println!("farthest over the tolerance {:.3} (number {}), slowest {:?} (number {})", worst.0, worst.1, slowest.0, slowest.1);
+    println!(
+        "farthest over the tolerance {:.3} (number {}), slowest {:?} (number {})",
+        worst.0, worst.1, slowest.0, slowest.1
+    );
     refused.iter().for_each(|(reason, which)| println!("refused {which:?}: {reason}"));
     assert!(refused.is_empty() && worst.0 <= 1.0, "{refused:?} {worst:?}");
 }

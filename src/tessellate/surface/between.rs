@@ -7,7 +7,7 @@ use super::Care;
 use super::check;
 use super::frame::Local;
 use super::refine::{MEASURED_SHARE, Refinement, SURE};
-use super::table::{MOST_STEPS, Parts};
+use super::table::{MOST_STEPS, PARTS_UNKNOWN, Parts};
 use crate::math::Vec3;
 use crate::mesh::Topology;
 use crate::surface::{Surface, least_distance};
@@ -86,13 +86,18 @@ impl Refinement<'_> {
     /// each part of it is within the tolerance of one flat triangle, at its corners and with what bends it between them.
     fn distance_back(&self, t: u32, tolerance: f64) -> f64 {
         let parameters = self.parameters(self.triangles[t as usize]);
-        let Some(whole) = self.table.whole(&parameters) else { return 0.0 };
-        let part = Part { parameters, points: parameters.map(|[u, v]| self.surface.point(u, v)), cuts: 0 };
+        let Some(whole) = self.table.whole(&parameters) else { return self.distance_of_points_back(t) };
+        let points = parameters.map(|[u, v]| self.surface.point(u, v));
+        let flat = self.corners(self.triangles[t as usize]);
+        let part = Part { parameters, points, flat, cuts: 0 };
         let mut pending = vec![part];
         let mut most: f64 = 0.0;
         while let Some(part) = pending.pop() {
             let bend = whole * tolerance / f64::from(1 << (2 * part.cuts));
-            let near = self.distance_to_one(t, &part.points, tolerance - bend);
+            let mut near = part.apart();
+            if near + bend > tolerance {
+                near = self.distance_to_one(t, &part.points, tolerance - bend).min(near);
+            }
             if near + bend <= tolerance {
                 most = most.max(near + bend);
             } else if part.cuts < MOST_CUTS {
@@ -102,6 +107,17 @@ impl Refinement<'_> {
             }
         }
         most
+    }
+
+    /// [`Self::distance_back`] where bends are not known: that of some points, however near others are.
+    fn distance_of_points_back(&self, t: u32) -> f64 {
+        let parameters = self.parameters(self.triangles[t as usize]);
+        let enough = self.allowed(&parameters);
+        let back = |weights: [f64; 3]| {
+            let [u, v] = check::mixed(weights, &parameters);
+            self.distance_to_one(t, &[self.surface.point(u, v); 3], enough)
+        };
+        check::places(PARTS_UNKNOWN).into_iter().map(back).fold(0.0, f64::max)
     }
 
     /// The distance of some points from a single triangle, any that is enough or the nearest there is: from triangle to
@@ -174,23 +190,30 @@ const MOST_CUTS: u32 = 6;
 struct Part {
     parameters: [[f64; 2]; 3],
     points: [Vec3; 3],
+    /// Points of the triangle at the same parameters.
+    flat: [Vec3; 3],
     cuts: u32,
 }
 
 impl Part {
+    /// How far corners are from those of the triangle.
+    fn apart(&self) -> f64 {
+        [0, 1, 2].map(|k: usize| self.points[k].distance(self.flat[k])).into_iter().fold(0.0, f64::max)
+    }
+
     /// Three at its corners, and the one between them.
     fn quarters(&self, surface: &dyn Surface) -> [Part; 4] {
-        let Part { parameters: [a, b, c], points: [p, q, r], .. } = *self;
-        let middle =
-            |a: [f64; 2], b: [f64; 2]| [0, 1].map(|axis: usize| 0.5 * a[axis] + 0.5 * b[axis]);
+        let Part { parameters: [a, b, c], points: [p, q, r], flat: [x, y, z], .. } = *self;
+        let middle = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|axis: usize| 0.5 * a[axis] + 0.5 * b[axis]);
         let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
         let [pq, qr, rp] = [ab, bc, ca].map(|[u, v]| surface.point(u, v));
-        let part = |parameters, points| Part { parameters, points, cuts: self.cuts + 1 };
+        let [xy, yz, zx] = [0.5 * x + 0.5 * y, 0.5 * y + 0.5 * z, 0.5 * z + 0.5 * x];
+        let part = |parameters, points, flat| Part { parameters, points, flat, cuts: self.cuts + 1 };
         [
-            part([a, ab, ca], [p, pq, rp]),
-            part([ab, b, bc], [pq, q, qr]),
-            part([ca, bc, c], [rp, qr, r]),
-            part([ab, bc, ca], [pq, qr, rp]),
+            part([a, ab, ca], [p, pq, rp], [x, xy, zx]),
+            part([ab, b, bc], [pq, q, qr], [xy, y, yz]),
+            part([ca, bc, c], [rp, qr, r], [zx, yz, z]),
+            part([ab, bc, ca], [pq, qr, rp], [xy, yz, zx]),
         ]
     }
 }

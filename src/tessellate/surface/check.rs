@@ -142,7 +142,7 @@ fn step(domain: [[f64; 2]; 2], place: Vec3, at: [f64; 2], &[point, du, dv]: &[Ve
     }
 }
 
-fn mixed(weights: [f64; 3], parameters: &[[f64; 2]; 3]) -> [f64; 2] {
+pub(super) fn mixed(weights: [f64; 3], parameters: &[[f64; 2]; 3]) -> [f64; 2] {
     [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>())
 }
 
@@ -162,9 +162,8 @@ pub(super) fn measure(
     known: f64,
 ) -> f64 {
     let domain = surface.domain();
-    let closely = |k: usize| {
-        distance_from(surface, domain, place(places[k], &corners), mixed(places[k], parameters))
-    };
+    let closely =
+        |k: usize| distance_from(surface, domain, place(places[k], &corners), mixed(places[k], parameters));
     largest(found, known, closely)
 }
 

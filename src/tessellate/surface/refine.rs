@@ -61,16 +61,8 @@ impl<'a> Refinement<'a> {
         triangles: Vec<[Local; 3]>,
     ) -> Refinement<'a> {
         let twins = Topology::new(&triangles).twins().to_vec();
-        let mut new = Refinement {
-            surface,
-            table,
-            nodes,
-            positions,
-            triangles,
-            twins,
-            ratios: Vec::new(),
-            told: 0.0,
-        };
+        let mut new =
+            Refinement { surface, table, nodes, positions, triangles, twins, ratios: Vec::new(), told: 0.0 };
         new.ratios = new.ratios_of_all();
         new
     }
@@ -102,7 +94,13 @@ impl<'a> Refinement<'a> {
     }
 
     /// Flips and splits until some triangles and what is made of them pass.
-    pub(super) fn mend(&mut self, mut pending: Vec<u32>, flips: bool, care: Care, room: u64) -> Result<(), Stopped> {
+    pub(super) fn mend(
+        &mut self,
+        mut pending: Vec<u32>,
+        flips: bool,
+        care: Care,
+        room: u64,
+    ) -> Result<(), Stopped> {
         while let Some(t) = pending.pop() {
             if self.ratios[t as usize] <= 1.0 {
                 continue;

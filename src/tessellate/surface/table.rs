@@ -10,6 +10,8 @@ const CELLS: [usize; 2] = [12, 32];
 const COARSE: usize = 4;
 /// Most parts of a side of a triangle that is measured closely.
 pub(super) const MOST_STEPS: usize = 24;
+/// The parts where no bounds tell how many it takes.
+pub(super) const PARTS_UNKNOWN: usize = 4;
 /// Share of the mixed derivative that counts as bending along an axis that has none of its own.
 const LEAST_SHARE: f64 = 0.1;
 
@@ -130,8 +132,13 @@ impl Table {
     /// Into how many parts each side of a triangle must be cut for distances at the corners of the parts to tell those between
     /// them up to a share of the tolerance; `None` where no bend makes them more than the tolerance.
     pub(super) fn parts(&self, parameters: &[[f64; 2]; 3], share: f64) -> Option<Parts> {
+        let Some(whole) = self.whole(parameters) else {
+            return Some(Parts { count: PARTS_UNKNOWN, rest: 0.0 });
+        };
+        if whole <= 1.0 {
+            return None;
+        }
         // What lies between shrinks with the square of the parts; NaN asks for the most.
-        let whole = self.whole(parameters).filter(|&whole| !(whole <= 1.0))?;
         let count = (whole / share).sqrt().ceil().min(MOST_STEPS as f64) as usize;
         Some(Parts { count, rest: whole / (count * count) as f64 })
     }
