@@ -20,6 +20,10 @@ use ogee::mesh::{Mesh, Solid};
 use oracle::Truth;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+/// Cases that failed once, and why: a result whose crossings were repaired forgot its exact surface, and the next call
+/// left what it had been moved by.
+const FAILED_ONCE: [u64; 1] = [405_873];
+
 type Kernel<'a> = &'a dyn Fn(&Tree, &[&Mesh]) -> Result<Mesh, String>;
 
 #[test]
@@ -27,7 +31,7 @@ fn kernel_equals_oracle() {
     let count = setting("OGEE_ORACLE_COUNT", 1500);
     let seed = setting("OGEE_ORACLE_SEED", 1);
     let mut failed = Vec::new();
-    for seed in seed..seed + count {
+    for seed in FAILED_ONCE.into_iter().chain(seed..seed + count) {
         let case = Case::random(seed);
         for kernel in [at_once, pair_by_pair, call_by_call] {
             if !disagreements(&case, &kernel).is_empty() {

@@ -317,11 +317,20 @@ fn what_rounding_folds_is_repaired() {
             moved(&cube(Vec3::splat(-0.5), 1.0), turn, Vec3::ZERO)
         })
         .collect();
-    let Combined { solid, certificate, .. } =
+    let Combined { solid, birth, certificate } =
         evaluate(&Tree::flat(Op::Union, 30), &cubes.iter().collect::<Vec<_>>()).expect("cubes");
     assert!(certificate.crossings_found > 0 && certificate.crossings_left == 0, "{certificate:?}");
     assert!(certificate.movement < 1e-14, "{certificate:?}");
     let all: Vec<u32> = (0..solid.triangles().len() as u32).collect();
     assert_eq!(crossing_pairs(solid.mesh(), &all), Vec::<[u32; 2]>::new());
     assert_eq!(solid.measures().genus, Some(0));
+    // The repair moved vertices; the next boolean goes on from where they are exactly, colours and all.
+    let materials: Vec<u32> = birth.iter().map(|birth| birth.operand).collect();
+    for cube in &cubes {
+        let whole = Operand::from(&solid);
+        for whole in [whole, whole.with_materials(&materials)] {
+            let nothing = evaluate(&Tree::flat(Op::Difference, 2), &[Operand::from(cube), whole]);
+            assert!(nothing.expect("solids").solid.is_empty());
+        }
+    }
 }

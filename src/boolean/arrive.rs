@@ -4,7 +4,7 @@ use super::body::Body;
 use super::world::{Facing, Labels, NONE, World};
 use super::{Birth, BooleanError, Operand};
 use crate::math::{Aabb, Vec3};
-use crate::mesh::{Defects, Mesh, Topology};
+use crate::mesh::{Defects, Exact, Mesh, Topology, Unmended};
 use crate::polygon::exact::{Lattice, Origin, PointId, Points, Snapped};
 use std::borrow::Cow;
 
@@ -15,16 +15,18 @@ pub(super) fn enter<'a>(
 ) -> Result<(World<'a>, Vec<Body>), BooleanError> {
     let closed = operands.iter().enumerate().map(|(i, operand)| topology_of(i, operand));
     let topologies: Vec<Cow<'_, Topology>> = closed.collect::<Result<_, _>>()?;
-    let coordinates = operands.iter().flat_map(|operand| &operand.mesh.positions);
-    let largest = coordinates.fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let meshes = || operands.iter().flat_map(Operand::meshes);
+    let largest =
+        meshes().flat_map(|mesh| &mesh.positions).fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let mut world = World::new(Snapped::new(largest, resolution));
     world.places.points.reserve(operands.iter().map(|operand| operand.mesh.positions.len()).sum());
     world.labels = operands.iter().map(|operand| operand.labels).collect();
     let rounds = world.places.lattice() != Lattice::fitting(largest);
     let mut taken_by = Vec::new();
     let enter = |(i, (operand, topology)): (u32, (&Operand<'a>, Cow<'_, Topology>))| {
-        let origin = origin_of(&world, operand, &topology, rounds);
-        Body::of_operand(&mut world, i, operand, &topology, origin.as_deref(), &mut taken_by)
+        let surface = Surface::behind(operand, &world, rounds);
+        let surface = surface.unwrap_or_else(|| Surface::at_positions(operand, &topology));
+        Body::of_operand(&mut world, i, &surface, &mut taken_by)
     };
     let bodies = (0..).zip(operands.iter().zip(topologies)).map(enter).collect();
     Ok((world, bodies))
@@ -54,61 +56,80 @@ fn topology_of<'a>(index: usize, operand: &Operand<'a>) -> Result<Cow<'a, Topolo
     }
 }
 
-/// The exact surface behind an operand, on the lattice of the world; `None` where its positions are all there is.
-///
-/// A coarse resolution is asked for to have positions rounded, so it is not circumvented. Where numbers would become too
-/// wide, positions are taken as they are.
-fn origin_of<'a>(
-    world: &World<'_>,
-    operand: &Operand<'a>,
-    topology: &Topology,
-    rounds: bool,
-) -> Option<Cow<'a, Origin>> {
-    let (origin, mesh) = (operand.origin?, operand.mesh);
-    let lattice = world.places.lattice();
-    let origin = match origin.lattice.exponent_in(lattice) {
-        0 => Cow::Borrowed(origin),
-        ..0 if rounds => return None,
-        _ => Cow::Owned(origin.at(lattice, &mesh.positions, &mesh.triangles)?),
-    };
-    labels_follow_edges(&origin, operand, topology).then_some(origin)
+/// What an operand enters with.
+struct Surface<'a> {
+    mesh: &'a Mesh,
+    topology: &'a Topology,
+    embedded: bool,
+    /// What positions do not say, on the lattice of the world.
+    origin: Option<Cow<'a, Origin>>,
+    /// For each triangle, the one of the operand that it is born from, unless that is itself.
+    stand_ins: Option<&'a [u32]>,
 }
 
-/// Whether labels differ across edges of faces only: a diagonal between points that are not on the lattice has no line
-/// on which labels could part.
-fn labels_follow_edges(origin: &Origin, operand: &Operand<'_>, topology: &Topology) -> bool {
-    let Labels::Each(labels) = operand.labels else { return true };
-    let mut is_fraction = vec![false; operand.mesh.positions.len()];
-    origin.fractions.iter().for_each(|&(vertex, _)| is_fraction[vertex as usize] = true);
-    origin.faces.iter().flat_map(|&(t, ..)| (0..3).map(move |i| 3 * t + i)).all(|half_edge| {
-        let corners = operand.mesh.triangles[half_edge as usize / 3];
-        let twin = topology.twin(half_edge);
-        twin == Topology::NONE
-            || labels[half_edge as usize / 3] == labels[twin as usize / 3]
-            || ![0, 1].iter().any(|i| is_fraction[corners[(half_edge as usize + i) % 3] as usize])
-            || origin.sides.binary_search_by_key(&half_edge, |side| side.0).is_ok()
-    })
+impl<'a> Surface<'a> {
+    /// The operand as its positions have it.
+    fn at_positions(operand: &Operand<'a>, topology: &'a Topology) -> Surface<'a> {
+        let (mesh, embedded) = (operand.mesh, operand.embedded);
+        Surface { mesh, topology, embedded, origin: None, stand_ins: None }
+    }
+
+    /// The exact surface behind an operand, on the lattice of the world; `None` where positions are all there is.
+    ///
+    /// A coarse resolution is asked for to have positions rounded, so it is not circumvented. Where numbers would become
+    /// too wide, positions are taken as they are.
+    fn behind(operand: &Operand<'a>, world: &World<'_>, rounds: bool) -> Option<Surface<'a>> {
+        let Exact { origin, unmended } = operand.exact?;
+        let (mesh, topology, stand_ins) = match unmended {
+            Some(Unmended { mesh, topology, stand_ins }) => (mesh, topology, Some(&stand_ins[..])),
+            None => (operand.mesh, operand.topology?, None),
+        };
+        let lattice = world.places.lattice();
+        let origin = match origin.lattice.exponent_in(lattice) {
+            0 => Cow::Borrowed(origin),
+            ..0 if rounds => return None,
+            _ => Cow::Owned(origin.at(lattice, &mesh.positions, &mesh.triangles)?),
+        };
+        let embedded = origin.embedded;
+        let surface = Surface { mesh, topology, embedded, origin: Some(origin), stand_ins };
+        surface.labels_follow_edges(operand.labels).then_some(surface)
+    }
+
+    /// The triangle of the operand that a triangle is born from.
+    fn born_from(&self, triangle: u32) -> u32 {
+        self.stand_ins.map_or(triangle, |stand_ins| stand_ins[triangle as usize])
+    }
+
+    /// Whether labels differ across edges of faces only: a diagonal between points that are not on the lattice has no
+    /// line on which labels could part.
+    fn labels_follow_edges(&self, labels: Labels<'_>) -> bool {
+        let (Labels::Each(labels), Some(origin)) = (labels, &self.origin) else { return true };
+        let mut is_fraction = vec![false; self.mesh.positions.len()];
+        origin.fractions.iter().for_each(|&(vertex, _)| is_fraction[vertex as usize] = true);
+        let label = |half_edge: u32| labels[self.born_from(half_edge / 3) as usize];
+        origin.faces.iter().flat_map(|&(t, ..)| (0..3).map(move |i| 3 * t + i)).all(|half_edge| {
+            let corners = self.mesh.triangles[half_edge as usize / 3];
+            let twin = self.topology.twin(half_edge);
+            twin == Topology::NONE
+                || label(half_edge) == label(twin)
+                || ![0, 1].iter().any(|i| is_fraction[corners[(half_edge as usize + i) % 3] as usize])
+                || origin.sides.binary_search_by_key(&half_edge, |side| side.0).is_ok()
+        })
+    }
 }
 
 impl Body {
     /// Enters an operand into the world. Triangles without area on the lattice are dropped. `taken_by` tells for points
     /// the last operand with a vertex there.
-    fn of_operand(
-        world: &mut World<'_>,
-        index: u32,
-        operand: &Operand<'_>,
-        topology: &Topology,
-        origin: Option<&Origin>,
-        taken_by: &mut Vec<u32>,
-    ) -> Body {
-        let mesh = operand.mesh;
+    fn of_operand(world: &mut World<'_>, index: u32, surface: &Surface<'_>, taken_by: &mut Vec<u32>) -> Body {
+        let Surface { mesh, topology, ref origin, .. } = *surface;
         let ids = match origin {
             Some(origin) => exact_points(world, &mesh.positions, origin),
             None => world.places.add_all(&mesh.positions),
         };
         taken_by.resize(world.points().len().max(taken_by.len()), NONE);
         let shares = |p: &PointId| std::mem::replace(&mut taken_by[p.0 as usize], index) == index;
-        let may_be_pinched = ids.iter().any(shares);
+        let may_be_pinched = ids.iter().any(shares) || surface.stand_ins.is_some();
         let mut body = Body { may_be_pinched, ..Body::default() };
         body.corners.reserve(mesh.triangles.len());
         body.births.reserve(mesh.triangles.len());
@@ -118,14 +139,13 @@ impl Body {
             if has_area(world.points(), corners) {
                 slots[t as usize] = body.corners.len() as u32;
                 body.corners.push(corners);
-                body.births.push(Birth { operand: index, triangle: t });
+                body.births.push(Birth { operand: index, triangle: surface.born_from(t) });
             }
         }
         let is_whole = body.corners.len() == mesh.triangles.len();
         body.twins = if is_whole { topology.twins().to_vec() } else { twins_of(topology, &slots) };
         body.bounds = Aabb::of(body.corners.iter().flatten().map(|&p| world.points().rounded(p)));
-        let embedded = origin.map_or(operand.embedded, |origin| origin.embedded);
-        body.embedded = embedded && is_whole;
+        body.embedded = surface.embedded && is_whole;
         if let Some(origin) = origin {
             body.remember(world, origin, &slots);
         }

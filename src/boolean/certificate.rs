@@ -5,7 +5,7 @@ use super::repair::Patient;
 use super::tree::Tree;
 use super::world::Labels;
 use super::{Birth, Combined, Operand, Steps, arrive, strategy};
-use crate::mesh::{Mesh, Solid, components, crossing_pairs};
+use crate::mesh::{Exact, Mesh, Solid, Topology, Unmended, components, crossing_pairs};
 use crate::polygon::exact::Origin;
 
 /// What a result is known to be. That it is closed and two-manifold is part of what a [`Solid`] is.
@@ -55,26 +55,72 @@ const MOST_DOUBLINGS: i32 = 10;
 
 /// Makes a result of a rounded surface: looks for crossings and repairs them.
 pub(super) fn certify(rounded: Rounded, operands: &[Operand<'_>]) -> Combined {
-    let Rounded { mesh, birth, twins, embedded, origin, is_whole, movement } = rounded;
+    let Rounded { mesh, birth, twins, embedded, origin, unparted, movement } = rounded;
     let suspects = origin.as_ref().map_or_else(Vec::new, |origin| moved_triangles(&mesh, origin));
     let found = crossing_pairs(&mesh, &suspects);
     let ulp = f64::EPSILON * mesh.positions.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let mut certificate =
         Certificate { slivers: 0, crossings_found: found.len(), crossings_left: found.len(), movement };
+    let exact = unparted.or_else(|| origin.map(|origin| Exact { origin, unmended: None }));
     let repaired = if found.is_empty() { None } else { repair(&mesh, &birth, &found, ulp, operands) };
     let (solid, birth) = match repaired {
         Some(repaired) => {
             certificate.crossings_left = 0;
             certificate.movement += repaired.movement;
-            (Solid::assume(repaired.mesh, false), repaired.birth)
+            let rounded = (mesh, Topology::of_twins(twins), birth);
+            let exact = exact.map(|exact| behind(exact, rounded, &repaired.birth, operands));
+            (Solid::assume(repaired.mesh, false).rounded_from(exact), repaired.birth)
         }
         None => {
             let solid = Solid::assume(mesh, embedded).with_twins(twins);
-            (solid.rounded_from(origin.filter(|_| is_whole)), birth)
+            (solid.rounded_from(exact), birth)
         }
     };
     certificate.slivers = slivers(solid.mesh(), SLIVER * ulp);
     Combined { solid, birth, certificate }
+}
+
+/// The exact surface behind a rounded one that was repaired, whose triangles then had the births given last.
+fn behind(
+    exact: Exact,
+    (mesh, topology, birth): (Mesh, Topology, Vec<Birth>),
+    repaired: &[Birth],
+    operands: &[Operand<'_>],
+) -> Exact {
+    let Exact { origin, unmended } = exact;
+    let unmended = unmended.unwrap_or_else(|| {
+        let stand_ins = (0..mesh.triangles.len() as u32).collect();
+        Unmended { mesh, topology, stand_ins }
+    });
+    let births = unmended.stand_ins.iter().map(|&t| birth[t as usize]);
+    let stand_ins = stand_ins(births, repaired, operands);
+    Exact { origin, unmended: Some(Unmended { stand_ins, ..unmended }) }
+}
+
+/// For each birth, one of the triangles that were born from the same, or, where that face was too thin to be left, one
+/// with the same label.
+fn stand_ins(births: impl Iterator<Item = Birth>, left: &[Birth], operands: &[Operand<'_>]) -> Vec<u32> {
+    let mut by_birth: Vec<(Birth, u32)> = left.iter().copied().zip(0..).collect();
+    let mut by_label: Vec<(u32, u32)> = by_birth.iter().map(|&(b, t)| (label_of(b, operands), t)).collect();
+    by_birth.sort_unstable();
+    by_label.sort_unstable();
+    let stand_in = |birth: Birth| {
+        let at = by_birth.partition_point(|known| known.0 < birth);
+        if let Some(&(_, t)) = by_birth.get(at).filter(|known| known.0 == birth) {
+            return t;
+        }
+        let label = label_of(birth, operands);
+        let at = by_label.partition_point(|known| known.0 < label);
+        by_label.get(at).or(by_label.last()).map_or(0, |known| known.1)
+    };
+    births.map(stand_in).collect()
+}
+
+fn label_of(birth: Birth, operands: &[Operand<'_>]) -> u32 {
+    match operands[birth.operand as usize].labels {
+        Labels::One(label) => label,
+        Labels::Each(labels) => labels[birth.triangle as usize],
+    }
 }
 
 /// Triangles with a vertex that leaving the lattice has moved, in order. Vertices of operands went the other way.
@@ -154,11 +200,7 @@ fn shape_of(mesh: &Mesh) -> (usize, i64) {
 
 /// The surface as an operand that crosses itself, made sound and rounded again.
 fn rearranged(state: &Repaired, operands: &[Operand<'_>]) -> Option<Repaired> {
-    let label = |birth: &Birth| match operands[birth.operand as usize].labels {
-        Labels::One(label) => label,
-        Labels::Each(labels) => labels[birth.triangle as usize],
-    };
-    let labels: Vec<u32> = state.birth.iter().map(label).collect();
+    let labels: Vec<u32> = state.birth.iter().map(|&birth| label_of(birth, operands)).collect();
     let operand = Operand::from(&state.mesh).with_materials(&labels);
     let (world, bodies) = arrive::enter(&[operand], 0.0).ok()?;
     let (world, body) = strategy::evaluate(world, bodies, &Tree::Leaf(0), Steps::Once);

@@ -4,7 +4,7 @@ use super::Birth;
 use super::body::Body;
 use super::world::{Lookup, NONE, World};
 use crate::math::Vec3;
-use crate::mesh::{Mesh, fans};
+use crate::mesh::{Exact, Mesh, Topology, Unmended, fans};
 use crate::polygon::exact::{Origin, Plane, PointId};
 
 /// A result with rounded positions.
@@ -14,10 +14,10 @@ pub(super) struct Rounded {
     pub(super) twins: Vec<u32>,
     /// Whether it is known not to cross itself.
     pub(super) embedded: bool,
-    /// What it was rounded from.
+    /// What positions do not say.
     pub(super) origin: Option<Origin>,
-    /// Whether it is a surface that can be gone back to: all triangles have area.
-    pub(super) is_whole: bool,
+    /// The exact surface, where `mesh` has triangles without area: edges were too short to be parted.
+    pub(super) unparted: Option<Exact>,
     /// Bound on the distance of a vertex from its exact place.
     pub(super) movement: f64,
 }
@@ -26,24 +26,40 @@ impl World<'_> {
     /// The surface that a body stands for.
     pub(super) fn round(mut self, body: Body) -> Rounded {
         let mut surface = Numbered::new(body);
-        let is_parted = surface.part_double_edges(&mut self);
-        let Numbered { body, vertices, count } = surface;
-        let mut points = vec![PointId(NONE); count as usize];
-        for (&point, &vertex) in body.corners.iter().flatten().zip(&vertices) {
-            points[vertex as usize] = point;
-        }
-        let positions: Vec<Vec3> = points.iter().map(|&point| self.places.position(point)).collect();
+        let unparted = surface.part_double_edges(&mut self);
+        let is_parted = unparted.is_some();
+        let points = surface.points();
+        let mesh = self.mesh_of(&surface, &points);
+        let Numbered { body, .. } = surface;
         let embedded = body.embedded
             && !is_parted
             && self.places.is_exact()
             && points.iter().all(|&point| self.places.is_given(point));
         let exact = body.embedded && !is_parted;
-        // Edges too short to be parted leave triangles without area, which have no place in an exact surface.
-        let is_whole = !is_parted || body.corners.iter().all(|&[a, b, c]| a != b && b != c && c != a);
         let origin = if embedded { None } else { self.origin_of(&body, &points, exact) };
-        let movement = origin.as_ref().map_or(0.0, |origin| self.movement(origin, &positions));
-        let mesh = Mesh { positions, triangles: vertices.as_chunks().0.to_vec() };
-        Rounded { mesh, birth: body.births, twins: body.twins, embedded, origin, is_whole, movement }
+        let movement = origin.as_ref().map_or(0.0, |origin| self.movement(origin, &mesh.positions));
+        let is_thin = |&[a, b, c]: &[PointId; 3]| a == b || b == c || c == a;
+        let unparted = unparted.filter(|_| body.corners.iter().any(is_thin));
+        let unparted = unparted.map(|unparted| self.exact(unparted));
+        Rounded { mesh, birth: body.births, twins: body.twins, embedded, origin, unparted, movement }
+    }
+
+    fn mesh_of(&self, surface: &Numbered, points: &[PointId]) -> Mesh {
+        let positions = points.iter().map(|&point| self.places.position(point)).collect();
+        Mesh { positions, triangles: surface.vertices.as_chunks().0.to_vec() }
+    }
+
+    /// A surface before edges were parted, each triangle of which is the one of that number afterwards or has become it
+    /// and more.
+    fn exact(&self, surface: Numbered) -> Exact {
+        let points = surface.points();
+        let mesh = self.mesh_of(&surface, &points);
+        let body = surface.body;
+        let origin = self.origin_of(&body, &points, body.embedded);
+        let origin = origin.unwrap_or_else(|| Origin::on(self.places.lattice(), body.embedded));
+        let stand_ins = (0..body.len() as u32).collect();
+        let topology = Topology::of_twins(body.twins);
+        Exact { origin, unmended: Some(Unmended { mesh, topology, stand_ins }) }
     }
 
     /// Bound on the distance of positions from where the vertices are: half an ulp in each coordinate of what was rounded,
@@ -99,6 +115,7 @@ impl Numbers {
 }
 
 /// A body with its corners numbered, one vertex for each fan of triangles.
+#[derive(Clone)]
 struct Numbered {
     body: Body,
     /// For each corner, its vertex.
@@ -112,19 +129,29 @@ impl Numbered {
         Numbered { body, vertices, count }
     }
 
-    /// Gives each pair of half-edges an edge of its own: where a solid pinches itself along an edge, both wedges may run
-    /// between the same two vertices; all but one of them get a vertex on the way. Tells whether there were any.
-    fn part_double_edges(&mut self, world: &mut World<'_>) -> bool {
-        let mut double = self.double_edges();
-        let any = !double.is_empty();
-        if any {
-            self.body.lines.resize(self.body.twins.len(), NONE);
+    /// The point of each vertex.
+    fn points(&self) -> Vec<PointId> {
+        let mut points = vec![PointId(NONE); self.count as usize];
+        for (&point, &vertex) in self.body.corners.iter().flatten().zip(&self.vertices) {
+            points[vertex as usize] = point;
         }
+        points
+    }
+
+    /// Gives each pair of half-edges an edge of its own: where a solid pinches itself along an edge, both wedges may run
+    /// between the same two vertices; all but one of them get a vertex on the way. What was before, if there were any.
+    fn part_double_edges(&mut self, world: &mut World<'_>) -> Option<Numbered> {
+        let mut double = self.double_edges();
+        if double.is_empty() {
+            return None;
+        }
+        let unparted = self.clone();
+        self.body.lines.resize(self.body.twins.len(), NONE);
         while !double.is_empty() {
             self.part(world, &double);
             double = self.double_edges();
         }
-        any
+        Some(unparted)
     }
 
     /// Parts edges, but none of a triangle that was cut already: its half-edges have moved.

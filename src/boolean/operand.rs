@@ -1,6 +1,5 @@
 use super::world::Labels;
-use crate::mesh::{Mesh, Solid, Topology};
-use crate::polygon::exact::Origin;
+use crate::mesh::{Exact, Mesh, Solid, Topology};
 
 /// An operand of a boolean: a mesh and what is known of it.
 #[derive(Clone, Copy, Debug)]
@@ -12,10 +11,16 @@ pub struct Operand<'a> {
     pub(super) embedded: bool,
     pub(super) labels: Labels<'a>,
     /// What it was rounded from.
-    pub(super) origin: Option<&'a Origin>,
+    pub(super) exact: Option<&'a Exact>,
 }
 
 impl<'a> Operand<'a> {
+    /// The mesh that it is, and the one that it was before it was mended.
+    pub(super) fn meshes(&self) -> impl Iterator<Item = &'a Mesh> {
+        let unmended = self.exact.and_then(|exact| exact.unmended.as_ref());
+        std::iter::once(self.mesh).chain(unmended.map(|unmended| &unmended.mesh))
+    }
+
     /// The same operand with a label: coplanar faces with different labels are not merged, so that each triangle of the
     /// result has one label. All operands have label 0 unless told otherwise.
     #[must_use]
@@ -36,7 +41,7 @@ impl<'a> Operand<'a> {
 
 impl<'a> From<&'a Mesh> for Operand<'a> {
     fn from(mesh: &'a Mesh) -> Self {
-        Operand { mesh, topology: None, embedded: false, labels: Labels::One(0), origin: None }
+        Operand { mesh, topology: None, embedded: false, labels: Labels::One(0), exact: None }
     }
 }
 
@@ -47,7 +52,7 @@ impl<'a> From<&'a Solid> for Operand<'a> {
             topology: Some(solid.topology()),
             embedded: solid.is_embedded(),
             labels: Labels::One(0),
-            origin: solid.origin(),
+            exact: solid.exact(),
         }
     }
 }

@@ -8,10 +8,11 @@ use super::extract::Extracted;
 use super::lattice::Map;
 use super::refine::{Leaf, Refinement};
 use super::tetrahedron::{EDGES, LAST_GENERATION};
-use super::{Places, near::distance_to_triangle};
+use super::{Places, cover::is_covered};
 use crate::math::{Aabb, Interval, Vec3};
 use crate::par;
 use crate::sdf::{Curvature, Field};
+use std::borrow::Cow;
 
 /// Leaves that must be halved, and those that cannot be.
 pub(super) struct Proof {
@@ -218,7 +219,8 @@ impl Prover<'_> {
         triangles: &[[Vec3; 3]],
         depth: u32,
     ) -> bool {
-        let (linear, slack) = self.linear(corners, bend).unwrap_or(([0.0; 4], f64::INFINITY));
+        let unknown = ([0.0; 4], f64::INFINITY, Vec3::ZERO);
+        let (linear, slack, along) = self.linear(corners, bend).unwrap_or(unknown);
         if linear.iter().all(|&l| l > slack) || linear.iter().all(|&l| l < -slack) {
             return true;
         }
@@ -228,9 +230,13 @@ impl Prover<'_> {
         let steepness = linear.iter().fold(0.0, |most: f64, l| most.max((l - linear[0]).abs())) / length;
         let thin = slack <= 2.0 * steepness * self.tolerance || length <= 2.0 * self.tolerance;
         let cell = grown(Aabb::of(corners), self.tolerance);
-        let near: Vec<[Vec3; 3]> =
-            triangles.iter().copied().filter(|&triangle| Aabb::of(triangle).touches(cell)).collect();
-        if thin && self.is_covered(&slab(corners, linear, slack), &near) {
+        let mut near = Cow::Borrowed(triangles);
+        if thin || depth.is_multiple_of(3) {
+            let touches = |triangle: &[Vec3; 3]| Aabb::around(*triangle).touches(cell);
+            near = Cow::Owned(triangles.iter().copied().filter(touches).collect());
+        }
+        let all = self.own.iter().chain(near.iter());
+        if thin && is_covered(&slab(corners, linear, slack), along, all, self.tolerance) {
             return true;
         }
         if depth > 40 || length < 0.25 * self.tolerance || (bend.is_some() && depth > 9) {
@@ -245,14 +251,15 @@ impl Prover<'_> {
         })
     }
 
-    /// A linear function by its values at the corners, and how far the field can be from it.
-    fn linear(&self, corners: [Vec3; 4], bend: Option<f64>) -> Option<([f64; 4], f64)> {
+    /// A linear function by its values at the corners, how far the field can be from it, and its gradient.
+    fn linear(&self, corners: [Vec3; 4], bend: Option<f64>) -> Option<([f64; 4], f64, Vec3)> {
         let middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
         let (value, gradient) = self.field.gradient(middle);
         let from = corners.map(|p| p - middle);
         if let Some(bend) = bend {
             let radius = from.iter().fold(0.0, |most: f64, d| most.max(d.length_squared()));
-            return Some((from.map(|d| value + gradient.dot(d)), 0.5 * bend * radius * (1.0 + 1e-9)));
+            let slack = 0.5 * bend * radius * (1.0 + 1e-9);
+            return Some((from.map(|d| value + gradient.dot(d)), slack, gradient));
         }
         let slopes = self.field.slopes(Aabb::of(corners))?;
         if slopes.range.interval.is_empty() || !slopes.gradient.iter().all(|g| g.is_bounded()) {
@@ -261,16 +268,7 @@ impl Prover<'_> {
         let mean = Vec3::from_array(slopes.gradient.map(Interval::middle));
         let spread = Vec3::from_array(slopes.gradient.map(|g| 0.5 * g.width()));
         let slack = from.iter().fold(0.0, |most: f64, d| most.max(spread.dot(d.abs())));
-        Some((from.map(|d| value + mean.dot(d)), slack * (1.0 + 1e-9)))
-    }
-
-    /// Whether one triangle is within the tolerance of all points, and so of all between them.
-    fn is_covered(&self, points: &[Vec3], near: &[[Vec3; 3]]) -> bool {
-        let limit = self.tolerance * self.tolerance;
-        let covers = |triangle: &[Vec3; 3]| {
-            points.iter().all(|&p| distance_to_triangle(*triangle, p).length_squared() <= limit)
-        };
-        self.own.iter().any(covers) || near.iter().any(covers)
+        Some((from.map(|d| value + mean.dot(d)), slack * (1.0 + 1e-9), mean))
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod bounds;
 mod certify;
+mod cover;
 mod crossing;
 mod cubes;
 mod extract;

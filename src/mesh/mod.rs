@@ -3,6 +3,7 @@
 
 mod crossing;
 mod defects;
+mod exact;
 mod measure;
 mod primitive;
 mod solid;
@@ -11,6 +12,7 @@ mod topology;
 pub use crossing::crossing_pairs;
 pub use defects::Defects;
 pub(crate) use defects::fans;
+pub(crate) use exact::{Exact, Unmended};
 pub use measure::{Measures, area, components, volume};
 pub use primitive::{TooLarge, cuboid, frustum, frustum_triangles, sphere, sphere_triangles};
 pub use solid::Solid;

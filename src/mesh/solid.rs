@@ -1,7 +1,6 @@
 use super::defects::fans;
-use super::{Defects, Mesh, Topology};
+use super::{Defects, Exact, Mesh, Topology};
 use crate::math::Vec3;
-use crate::polygon::exact::Origin;
 use std::sync::{Arc, OnceLock};
 
 /// A mesh that bounds a volume, checked once.
@@ -29,7 +28,7 @@ use std::sync::{Arc, OnceLock};
 pub struct Solid {
     mesh: Mesh,
     embedded: bool,
-    origin: Option<Arc<Origin>>,
+    exact: Option<Arc<Exact>>,
     /// Once somebody has asked.
     topology: OnceLock<Topology>,
 }
@@ -64,8 +63,8 @@ impl Solid {
     }
 
     /// The same solid with the exact surface that it was rounded from.
-    pub(crate) fn rounded_from(self, origin: Option<Origin>) -> Solid {
-        Solid { origin: origin.map(Arc::new), ..self }
+    pub(crate) fn rounded_from(self, exact: Option<Exact>) -> Solid {
+        Solid { exact: exact.map(Arc::new), ..self }
     }
 
     /// The same solid with its topology, which whoever made it knew.
@@ -80,14 +79,14 @@ impl Solid {
     }
 
     /// The exact surface that it was rounded from, where that is another.
-    pub(crate) fn origin(&self) -> Option<&Origin> {
-        self.origin.as_deref()
+    pub(crate) fn exact(&self) -> Option<&Exact> {
+        self.exact.as_deref()
     }
 
     /// The same solid, its positions taken as they are: it forgets the exact surface that a boolean rounded them from.
     #[must_use]
     pub fn settled(self) -> Solid {
-        Solid { origin: None, ..self }
+        Solid { exact: None, ..self }
     }
 
     /// Whether the surface is known not to cross itself; `false` where nobody has looked.
