@@ -49,7 +49,7 @@ fn ring(numbers: &mut Numbers, radius: f64) -> Vec<Vec2> {
 /// A planar or space path of size 5; a profile from far smaller than its bends to one that reaches beyond its middle; closed
 /// paths with whole turns of twist, open ones with any twist and scale.
 fn random_sweep(numbers: &mut Numbers) -> Result<Sweep, SurfaceError> {
-    let is_closed = numbers.next() % 3 > 0;
+    let is_closed = numbers.one_of(&[false, true, true]);
     let height = numbers.one_of(&[0.0, 1.0, 3.0]);
     let points = ring(numbers, 5.0);
     let path: Vec<Vec3> = points.iter().map(|p| p.extend(height * (numbers.unit() - 0.5))).collect();
