@@ -61,7 +61,8 @@ impl Refinement<'_> {
             for (k, found) in found.chunks(places.len()).enumerate() {
                 let (t, Parts { rest, .. }) = with[k];
                 let tolerance = allowed[k] / MEASURED_SHARE;
-                let rest = rest * tolerance;
+                // Nearest points may be farther apart than the places they are nearest to, so all that is kept back is told.
+                let rest = rest.max(1.0 - MEASURED_SHARE) * tolerance;
                 let known = (self.told - rest).clamp(0.0, allowed[k]);
                 let most =
                     check::measure_folds(self.surface, &places, &parameters[k], corners[k], found, known);

@@ -277,7 +277,7 @@ pub fn surfaces(
         }
         if let (true, Ok(first)) = (failed.is_none(), &made)
             && first.is_farther_than(options.precision)
-            && let Ok(second) = attempt(&layout, options, Care { least, by_place: true })
+            && let Ok(second) = attempt(&layout, &more_than(first, options), Care { least, by_place: true })
             && second.error.measured < first.error.measured
         {
             made = Ok(second);
@@ -298,6 +298,13 @@ pub fn surfaces(
         failed.get_or_insert(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
     }
     Err(failed.expect("there was an attempt"))
+}
+
+/// The options with room for what may be mended by more triangles: where it takes still more, the surface is hardly one.
+fn more_than(first: &Tessellation, options: &SurfaceOptions) -> SurfaceOptions {
+    const TIMES: u64 = 8;
+    let most = TIMES * first.mesh.triangles.len() as u64;
+    SurfaceOptions { max_triangles: most.min(options.max_triangles), ..*options }
 }
 
 /// How an attempt goes about it.
