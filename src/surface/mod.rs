@@ -25,6 +25,8 @@ mod b_spline;
 mod bends;
 mod classic;
 mod classic_bends;
+mod flat_in_ellipsoid;
+mod flat_in_torus;
 mod formula;
 mod frames;
 mod grid;
@@ -158,6 +160,11 @@ pub trait Surface: Sync {
     /// A proven bound of the distance, both ways, between a flat triangle with its corners on the surface and the part of the
     /// surface that it stands for, from the corners alone: for surfaces where there is a close one in closed form. `None` for
     /// all triangles of other surfaces, infinite for triangles that stand for no part.
+    ///
+    /// That part is where a continuous map takes the triangle: from the middle of a sphere, the axis of a cylinder or the ring
+    /// of a torus outward, along the paths of steepest ascent of an ellipsoid. The bound is of how far that moves its points.
+    /// The parts of the triangles of a mesh without gaps cover the surface when none of its sides goes around farther than
+    /// half a turn, in its parameters: then the mesh can be moved into the surface without crossing middle, axis or ring.
     fn triangle_bound(&self, _corners: [Vec3; 3]) -> Option<f64> {
         None
     }

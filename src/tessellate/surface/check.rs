@@ -3,7 +3,7 @@
 use super::slide::{self, Turned};
 use super::table::Table;
 use crate::math::Vec3;
-use crate::surface::{Jet, Surface, least_distance};
+use crate::surface::{Jet, Surface};
 
 /// A proven bound of the distance between a triangle and its part of the surface, over the tolerance there.
 pub(super) fn bound(table: &Table, surface: &dyn Surface, parameters: &[[f64; 2]; 3]) -> f64 {
@@ -142,7 +142,7 @@ fn step(domain: [[f64; 2]; 2], place: Vec3, at: [f64; 2], &[point, du, dv]: &[Ve
     }
 }
 
-fn mixed(weights: [f64; 3], parameters: &[[f64; 2]; 3]) -> [f64; 2] {
+pub(super) fn mixed(weights: [f64; 3], parameters: &[[f64; 2]; 3]) -> [f64; 2] {
     [0, 1].map(|axis: usize| (0..3).map(|k| weights[k] * parameters[k][axis]).sum::<f64>())
 }
 
@@ -150,9 +150,7 @@ fn place(weights: [f64; 3], corners: &[Vec3; 3]) -> Vec3 {
     weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2]
 }
 
-/// The largest distance found between a triangle and its part of the surface: of places of the triangle from points of
-/// the surface that Newton steps bring near. Those points cover the surface as the places cover the mesh, so it is the
-/// distance both ways.
+/// The largest distance of places of a triangle from the surface, which Newton steps look for.
 ///
 /// What is not above `known` is not looked at closely: the result is at least that, and right where it is larger.
 pub(super) fn measure(
@@ -164,25 +162,13 @@ pub(super) fn measure(
     known: f64,
 ) -> f64 {
     let domain = surface.domain();
-    let mut most = known;
-    for (&weights, distance) in places.iter().zip(found) {
-        if *distance <= most {
-            continue;
-        }
-        let near = distance_from(surface, domain, place(weights, &corners), mixed(weights, parameters));
-        // NaN must not pass for small.
-        if near.is_nan() {
-            return near;
-        }
-        most = most.max(near);
-    }
-    most
+    let closely =
+        |k: usize| distance_from(surface, domain, place(places[k], &corners), mixed(places[k], parameters));
+    largest(found, known, closely)
 }
 
-/// The largest of the distances found at places of a triangle that are above what is known, looked at closely. Along a fold
-/// parameters run unevenly: a place may be near the surface, and the point at its parameters near the triangle, though they
-/// are not near each other.
-pub(super) fn closely(
+/// [`measure`] where the surface may be folded: a place may be near to what is at other parameters than its own.
+pub(super) fn measure_folds(
     surface: &dyn Surface,
     places: &[[f64; 3]],
     parameters: &[[f64; 2]; 3],
@@ -190,23 +176,35 @@ pub(super) fn closely(
     found: &[f64],
     known: f64,
 ) -> f64 {
+    if found.iter().all(|&distance| distance <= known) {
+        return known;
+    }
     let domain = surface.domain();
     let at: Vec<[f64; 2]> = places.iter().map(|&weights| mixed(weights, parameters)).collect();
     let mut points = vec![Vec3::ZERO; at.len()];
     surface.points(&at, &mut points);
-    let mut most = known;
-    for (k, &distance) in found.iter().enumerate() {
-        if distance <= known {
-            continue;
-        }
+    let closely = |k: usize| {
         let place = place(places[k], &corners);
-        let own = distance.min(distance_from(surface, domain, place, at[k]));
+        let own = found[k].min(distance_from(surface, domain, place, at[k]));
+        if own <= known {
+            return own;
+        }
         let nearest =
             |a: &usize, b: &usize| points[*a].distance(place).total_cmp(&points[*b].distance(place));
         let start = (0..at.len()).min_by(nearest).unwrap_or(k);
-        let there = distance_from(surface, domain, place, at[start]);
-        let back = least_distance(corners.map(|corner| corner - points[k]));
-        let near = own.min(there.max(back));
+        own.min(distance_from(surface, domain, place, at[start]))
+    };
+    largest(found, known, closely)
+}
+
+/// The largest of some distances that are above what is known, looked at closely.
+fn largest(found: &[f64], known: f64, closely: impl Fn(usize) -> f64) -> f64 {
+    let mut most = known;
+    for (k, &distance) in found.iter().enumerate() {
+        if distance <= most {
+            continue;
+        }
+        let near = closely(k);
         // NaN must not pass for small.
         if near.is_nan() {
             return f64::INFINITY;

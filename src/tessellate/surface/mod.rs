@@ -12,6 +12,7 @@
 //! 1986). It bounds the distance from the mesh to the surface and from the surface to the mesh. Where only what bends across
 //! the surface counts, see the notes of `slide`.
 
+mod between;
 mod caps;
 mod check;
 mod edge;
@@ -63,10 +64,11 @@ pub enum Guarantee {
     /// ([`Surface::second_bounds`], and fewer triangles with [`Surface::bends`]), else as `Measured`.
     #[default]
     Proven,
-    /// Distances at seven points of every triangle, and where the surface brings bounds of second derivatives at so many more
-    /// that what lies between them is below a twentieth of the tolerance (up to 88 points). Where more triangles do not help
-    /// at those, as along the crease of a fold, the distance that is told is above the tolerance. Fewer triangles where a
-    /// surface is unevenly parametrised, such as around a pole, since sliding along the surface is no error.
+    /// Distances at seven points of every triangle and at more between them, and from the surface back to the mesh; where the
+    /// surface brings bounds of second derivatives at so many that what lies between them is below a twentieth of the
+    /// tolerance, and that is part of the distance that is told. Where more triangles do not help, as along the crease of a
+    /// fold, the distance that is told is above the tolerance. Fewer triangles where a surface is unevenly parametrised, such
+    /// as around a pole, since sliding along the surface is no error.
     Measured,
 }
 
@@ -146,7 +148,8 @@ pub struct EdgeCounts {
 pub struct Achieved {
     /// A proven bound of the distance both ways; `None` when some surface brings no bounds or none were asked for.
     pub bound: Option<f64>,
-    /// The largest distance found, both ways, from seven points of every triangle.
+    /// The largest distance found: of seven points of every triangle from the surface where a bound is proven, else both ways
+    /// as [`Guarantee::Measured`] tells.
     pub measured: f64,
 }
 
@@ -272,6 +275,13 @@ pub fn surfaces(
         if failed.is_none() && matches!(made, Err(TessellationError::NotReached { .. })) {
             made = attempt(&layout, options, Care { least, by_place: true });
         }
+        if let (true, Ok(first)) = (failed.is_none(), &made)
+            && first.is_farther_than(options.precision)
+            && let Ok(second) = attempt(&layout, &more_than(first, options), Care { least, by_place: true })
+            && second.error.measured < first.error.measured
+        {
+            made = Ok(second);
+        }
         let tessellation = match made {
             Ok(tessellation) => tessellation,
             Err(error @ TessellationError::NotReached { .. }) => {
@@ -288,6 +298,13 @@ pub fn surfaces(
         failed.get_or_insert(TessellationError::Tangled { edges, triangles: defects.duplicate_triangles });
     }
     Err(failed.expect("there was an attempt"))
+}
+
+/// The options with room for what may be mended by more triangles: where it takes still more, the surface is hardly one.
+fn more_than(first: &Tessellation, options: &SurfaceOptions) -> SurfaceOptions {
+    const TIMES: u64 = 8;
+    let most = TIMES * first.mesh.triangles.len() as u64;
+    SurfaceOptions { max_triangles: most.min(options.max_triangles), ..*options }
 }
 
 /// How an attempt goes about it.
@@ -354,6 +371,11 @@ fn check_options(options: &SurfaceOptions) -> Result<(), TessellationError> {
 }
 
 impl Tessellation {
+    /// Whether the distance that is told is more than was asked for everywhere alike.
+    fn is_farther_than(&self, precision: Precision) -> bool {
+        matches!(precision, Precision::Distance(tolerance) if self.error.measured > tolerance)
+    }
+
     /// A unit normal for every corner of every triangle, those of poles as the limit from that triangle; corners of one
     /// surface at one vertex have the same, so smooth shading is smooth and edges between surfaces stay as they are.
     /// Where a surface has no normal it is that of the triangle.

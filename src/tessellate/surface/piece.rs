@@ -143,11 +143,13 @@ fn finish(surface: &dyn Surface, table: &Table, refinement: &Refinement<'_>) -> 
         made.parameters.push(parameters);
         corners.push(refinement.corners(triangle));
     }
-    made.measured = refinement.known_distance().unwrap_or_else(|| {
+    made.measured = if table.proven {
         let found = check::distances(surface, &PLACES, &made.parameters, &corners, |_| 0.0);
         found.chunks(PLACES.len()).enumerate().fold(0.0, |known: f64, (t, found)| {
             check::measure(surface, &PLACES, &made.parameters[t], corners[t], found, known)
         })
-    });
+    } else {
+        refinement.distance()
+    };
     made
 }

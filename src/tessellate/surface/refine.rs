@@ -4,7 +4,7 @@
 
 use super::check::PLACES;
 use super::frame::{FINEST, Local, Node, settled, turns_left};
-use super::table::{MOST_STEPS, Table};
+use super::table::Table;
 use super::{Care, TessellationError, check};
 use crate::math::Vec3;
 use crate::mesh::Topology;
@@ -12,9 +12,9 @@ use crate::surface::Surface;
 
 const NONE: u32 = Topology::NONE;
 /// Share of the tolerance that measured distances may use: between the places that are looked at they may be larger.
-const MEASURED_SHARE: f64 = 0.95;
+pub(super) const MEASURED_SHARE: f64 = 0.95;
 /// Below this share of what is allowed, distances need no closer look.
-const SURE: f64 = 0.5;
+pub(super) const SURE: f64 = 0.5;
 /// Triangles that are flatter are so by rounding.
 const FLAT: f64 = 1e-9;
 /// No flip makes triangles as thin askew: split again, they would become flat.
@@ -22,15 +22,17 @@ const THINNEST: f64 = 1e-3;
 
 #[derive(Clone)]
 pub(super) struct Refinement<'a> {
-    surface: &'a dyn Surface,
-    table: &'a Table,
+    pub(super) surface: &'a dyn Surface,
+    pub(super) table: &'a Table,
     pub(super) nodes: Vec<Node>,
     pub(super) positions: Vec<Vec3>,
     pub(super) triangles: Vec<[Local; 3]>,
     /// For each half-edge (side k of triangle t is 3 t + k) the one that runs the other way.
-    twins: Vec<u32>,
+    pub(super) twins: Vec<u32>,
     /// Distance from the surface over tolerance, for each triangle; the bound where there is one.
     pub(super) ratios: Vec<f64>,
+    /// The largest distance found between the usual places, with what may lie between those looked at.
+    pub(super) told: f64,
 }
 
 /// What stops a refinement, where.
@@ -59,7 +61,8 @@ impl<'a> Refinement<'a> {
         triangles: Vec<[Local; 3]>,
     ) -> Refinement<'a> {
         let twins = Topology::new(&triangles).twins().to_vec();
-        let mut new = Refinement { surface, table, nodes, positions, triangles, twins, ratios: Vec::new() };
+        let mut new =
+            Refinement { surface, table, nodes, positions, triangles, twins, ratios: Vec::new(), told: 0.0 };
         new.ratios = new.ratios_of_all();
         new
     }
@@ -90,67 +93,14 @@ impl<'a> Refinement<'a> {
         Ok(())
     }
 
-    /// Mends what fails between the usual places, where that can be done.
-    fn mend_between(&mut self, care: Care, room: u64) {
-        /// Few triangles fail; where mending takes more than this, distances are not found, as along the crease of a fold.
-        const MORE: u64 = 256;
-        let count = self.triangles.len() as u64;
-        let room = room.min(count + count / 2 + MORE);
-        let mut seen: Vec<[Local; 3]> = Vec::new();
-        loop {
-            seen.resize(self.triangles.len(), [0; 3]);
-            let is_new = |&t: &u32| self.triangles[t as usize] != seen[t as usize];
-            let new: Vec<u32> = (0..self.triangles.len() as u32).filter(is_new).collect();
-            let failing = self.failing_between(&new);
-            if failing.is_empty() {
-                return;
-            }
-            let before = self.clone();
-            seen.copy_from_slice(&self.triangles);
-            failing.iter().for_each(|&(t, ratio)| self.ratios[t as usize] = ratio);
-            // No flips: they compare what is found at the usual places, and could undo each other where more is known.
-            if self.mend(failing.iter().map(|&(t, _)| t).collect(), false, care, room).is_err() {
-                *self = before;
-                // What was found is part of the distance that is told.
-                failing.iter().for_each(|&(t, ratio)| self.ratios[t as usize] = ratio);
-                return;
-            }
-        }
-    }
-
-    /// Those of some triangles that fail at so many places that the bends of the surface leave no more than is kept back for
-    /// what lies between them, with the largest distance over what is allowed.
-    fn failing_between(&self, triangles: &[u32]) -> Vec<(u32, f64)> {
-        let own = |t: u32| {
-            let triangle = self.triangles[t as usize];
-            (self.parameters(triangle), self.corners(triangle))
-        };
-        let steps = |&t: &u32| self.table.steps(&own(t).0, 1.0 - MEASURED_SHARE);
-        let steps: Vec<usize> = triangles.iter().map(steps).collect();
-        let mut failing = Vec::new();
-        for count in 2..=MOST_STEPS {
-            let with: Vec<u32> =
-                (0..steps.len()).filter(|&k| steps[k] == count).map(|k| triangles[k]).collect();
-            let (parameters, corners): (Vec<_>, Vec<_>) = with.iter().map(|&t| own(t)).unzip();
-            let allowed: Vec<f64> = parameters.iter().map(|own| self.allowed(own)).collect();
-            let places = check::places(count);
-            let found = check::distances(self.surface, &places, &parameters, &corners, |k| allowed[k]);
-            for (k, found) in found.chunks(places.len()).enumerate() {
-                if found.iter().all(|&distance| distance <= allowed[k]) {
-                    continue;
-                }
-                let most =
-                    check::closely(self.surface, &places, &parameters[k], corners[k], found, allowed[k]);
-                if most > allowed[k] {
-                    failing.push((with[k], most / allowed[k]));
-                }
-            }
-        }
-        failing
-    }
-
     /// Flips and splits until some triangles and what is made of them pass.
-    fn mend(&mut self, mut pending: Vec<u32>, flips: bool, care: Care, room: u64) -> Result<(), Stopped> {
+    pub(super) fn mend(
+        &mut self,
+        mut pending: Vec<u32>,
+        flips: bool,
+        care: Care,
+        room: u64,
+    ) -> Result<(), Stopped> {
         while let Some(t) = pending.pop() {
             if self.ratios[t as usize] <= 1.0 {
                 continue;
@@ -181,7 +131,8 @@ impl<'a> Refinement<'a> {
         let parameters = self.parameters(triangle);
         if self.table.proven {
             let ratio = if self.table.closed_form {
-                let bound = self.surface.triangle_bound(self.corners(triangle));
+                let bound = || self.surface.triangle_bound(self.corners(triangle));
+                let bound = bound().filter(|_| !self.table.goes_around(&parameters));
                 bound.unwrap_or(f64::INFINITY) / self.table.tolerance(&parameters)
             } else {
                 check::bound(self.table, self.surface, &parameters)
@@ -195,7 +146,7 @@ impl<'a> Refinement<'a> {
     }
 
     /// What measured distances of a triangle may be.
-    fn allowed(&self, parameters: &[[f64; 2]; 3]) -> f64 {
+    pub(super) fn allowed(&self, parameters: &[[f64; 2]; 3]) -> f64 {
         MEASURED_SHARE * self.table.tolerance(parameters)
     }
 
@@ -205,13 +156,6 @@ impl<'a> Refinement<'a> {
         let known = SURE * allowed;
         let ratio = check::measure(self.surface, &PLACES, parameters, corners, found, known) / allowed;
         if ratio.is_nan() { f64::INFINITY } else { ratio }
-    }
-
-    /// The largest distance, where measured ratios tell it: small ones are not exact, and none are of different tolerances.
-    pub(super) fn known_distance(&self) -> Option<f64> {
-        let most = self.ratios.iter().copied().fold(0.0, f64::max);
-        let tolerance = self.table.same_tolerance().filter(|_| !self.table.proven && most > SURE)?;
-        Some(most * MEASURED_SHARE * tolerance)
     }
 
     pub(super) fn corners(&self, triangle: [Local; 3]) -> [Vec3; 3] {

@@ -2,19 +2,23 @@
 
 use super::slide::{Free, Slides, Turned};
 use super::{Guarantee, Precision, SurfaceOptions, TessellationError, check};
-use crate::surface::{Bends, Jet, Side, Surface};
+use crate::surface::{Bends, Gluing, Jet, Side, Surface};
 
 /// Cells an axis for Bézier patches, and for surfaces that may be of any shape.
 const CELLS: [usize; 2] = [12, 32];
 /// Cells an axis for bounds that only say where to measure.
 const COARSE: usize = 4;
 /// Most parts of a side of a triangle that is measured closely.
-pub(super) const MOST_STEPS: usize = 12;
+pub(super) const MOST_STEPS: usize = 24;
+/// The parts where no bounds tell how many it takes.
+pub(super) const PARTS_UNKNOWN: usize = 4;
 /// Share of the mixed derivative that counts as bending along an axis that has none of its own.
 const LEAST_SHARE: f64 = 0.1;
 
 pub(super) struct Table {
     domain: [[f64; 2]; 2],
+    /// Whether the surface comes back to where it began along u, and along v.
+    closed: [bool; 2],
     pub(super) cells: [usize; 2],
     /// Second derivatives over tolerance, by uu, uv, vv.
     bends: Vec<[f64; 3]>,
@@ -58,6 +62,7 @@ impl Table {
         let needed = bounds.is_none() || options.angle.is_some();
         let mut table = Table {
             domain,
+            closed: [surface.sides().u, surface.sides().v].map(|gluing| gluing != Gluing::Open),
             cells,
             bends: Vec::new(),
             tolerances: Vec::new(),
@@ -117,17 +122,25 @@ impl Table {
         [0.5 * along_u.sqrt(), 0.5 * along_v.sqrt()]
     }
 
-    /// How many parts a side of a triangle must have for distances at the corners of the parts to tell those between them up
-    /// to a share of the tolerance: 0 where corners of the whole do or no bounds are known, no more than [`MOST_STEPS`].
-    pub(super) fn steps(&self, parameters: &[[f64; 2]; 3], share: f64) -> usize {
-        let Some(lengths) = &self.lengths else { return 0 };
-        let bends = lengths.around(self.met_of([COARSE; 2], parameters));
-        let whole = check::bound_by(bends, parameters) / self.tolerance(parameters);
+    /// How far a triangle is at most off the surface at the same parameters, over the tolerance; `None` where no bounds are
+    /// known, or distances are proven otherwise.
+    pub(super) fn whole(&self, parameters: &[[f64; 2]; 3]) -> Option<f64> {
+        let bends = self.lengths.as_ref()?.around(self.met_of([COARSE; 2], parameters));
+        Some(check::bound_by(bends, parameters) / self.tolerance(parameters))
+    }
+
+    /// Into how many parts each side of a triangle must be cut for distances at the corners of the parts to tell those between
+    /// them up to a share of the tolerance; `None` where no bend makes them more than the tolerance.
+    pub(super) fn parts(&self, parameters: &[[f64; 2]; 3], share: f64) -> Option<Parts> {
+        let Some(whole) = self.whole(parameters) else {
+            return Some(Parts { count: PARTS_UNKNOWN, rest: 0.0 });
+        };
         if whole <= 1.0 {
-            return 0;
+            return None;
         }
         // What lies between shrinks with the square of the parts; NaN asks for the most.
-        (whole / share).sqrt().ceil().min(MOST_STEPS as f64) as usize
+        let count = (whole / share).sqrt().ceil().min(MOST_STEPS as f64) as usize;
+        Some(Parts { count, rest: whole / (count * count) as f64 })
     }
 
     /// Cells that the box of some parameters meets, as ranges of indices.
@@ -144,6 +157,15 @@ impl Table {
             let least = all.into_iter().fold(f64::INFINITY, f64::min);
             let most = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
             [index(least), index(most)]
+        })
+    }
+
+    /// Whether a triangle goes half around a closed axis or farther: its corners do not tell which way.
+    pub(super) fn goes_around(&self, parameters: &[[f64; 2]; 3]) -> bool {
+        [0, 1].into_iter().filter(|&axis| self.closed[axis]).any(|axis| {
+            let all = || parameters.iter().map(|p| p[axis]);
+            let extent = all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min);
+            2.0 * extent >= self.domain[axis][1] - self.domain[axis][0]
         })
     }
 
@@ -189,12 +211,6 @@ impl Table {
         self.met_cells(parameters).map(|cell| self.tolerances[cell]).fold(f64::INFINITY, f64::min)
     }
 
-    /// The tolerance, where it is the same everywhere.
-    pub(super) fn same_tolerance(&self) -> Option<f64> {
-        let first = self.tolerances[0];
-        self.tolerances.iter().all(|&tolerance| tolerance == first).then_some(first)
-    }
-
     /// Segments that a length of 1 along an axis needs in a cell.
     pub(super) fn density(&self, i: usize, j: usize, axis: usize) -> f64 {
         let cell = i * self.cells[1] + j;
@@ -208,6 +224,15 @@ impl Table {
         let along = [0, 1].map(|axis: usize| (to[axis] - from[axis]) * self.density(i, j, axis));
         along[0] * along[0] + along[1] * along[1]
     }
+}
+
+/// Where a triangle is looked at, at the corners of equal parts.
+#[derive(Clone, Copy)]
+pub(super) struct Parts {
+    /// Along each side.
+    pub(super) count: usize,
+    /// What may lie between, over the tolerance.
+    pub(super) rest: f64,
 }
 
 /// Bounds of the lengths of second derivatives by uu, uv and vv, on a coarse grid of cells.
