@@ -16,6 +16,22 @@ pub(super) fn is_covered<'t>(
     triangles: &(impl Iterator<Item = &'t [Vec3; 3]> + Clone),
     reach: f64,
 ) -> bool {
+    // The whole is less than its prism.
+    let is_beside = |triangle: &[Vec3; 3]| points.iter().all(|&p| is_near(p, triangle, reach));
+    parts_are_covered(points, along, triangles, reach) || triangles.clone().any(is_beside)
+}
+
+fn is_near(p: Vec3, triangle: &[Vec3; 3], reach: f64) -> bool {
+    distance_to_triangle(*triangle, p).length_squared() <= reach * reach
+}
+
+/// The same for the prism around the points, cut into parts.
+fn parts_are_covered<'t>(
+    points: &[Vec3],
+    along: Vec3,
+    triangles: &(impl Iterator<Item = &'t [Vec3; 3]> + Clone),
+    reach: f64,
+) -> bool {
     let (Some(&origin), Some(normal)) = (points.first(), along.try_normalize()) else { return false };
     let view = View::new(origin, normal);
     let seen: Vec<Vec3> = points.iter().map(|&p| view.see(p)).collect();
@@ -42,8 +58,8 @@ pub(super) fn is_covered<'t>(
     }
     // What nothing is straight under or over may still be beside a triangle.
     let is_beside = |part: &Vec<Vec2>, triangle: &[Vec3; 3]| {
-        let ends = part.iter().flat_map(|p| heights.map(|z| view.place(p.extend(z))));
-        ends.into_iter().all(|p| distance_to_triangle(*triangle, p).length_squared() <= reach * reach)
+        let mut ends = part.iter().flat_map(|p| heights.map(|z| view.place(p.extend(z))));
+        ends.all(|p| is_near(p, triangle, reach))
     };
     open.iter().all(|part| triangles.clone().any(|triangle| is_beside(part, triangle)))
 }
